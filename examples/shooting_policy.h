@@ -9,13 +9,14 @@
 #include <memory>
 #include <random>
 
-/// Of random torques u, held for K steps, the best one: argmin_u sum_{k=1}^{K} |z_{t+k|t} - z_ref|^2
+/// Draws random torques u and applies the best one, argmin_u sum_{k=1}^{K} |z_{t+k|t} - z_ref|^2,
+/// where u is held for K steps.
 class ShootingPolicy : public ddm::Policy {
  public:
-  static constexpr int kHorizon = 5, kNumSamples = 100;  // K, and how many torques are drawn
+  static constexpr int kHorizon = 5, kNumSamples = 100;  // K, number of random torques
 
-  /// @param model       with a goal image
-  /// @param max_torque  of each motor [N m]
+  /// @param model       model that contains a goal image
+  /// @param max_torque  largest torque of each motor [N m]
   ShootingPolicy(const std::shared_ptr<const ddm::Ddm>& model, double max_torque)
       : model_(model),
         uniform_(-max_torque, max_torque),
@@ -24,7 +25,8 @@ class ShootingPolicy : public ddm::Policy {
 
   void startTrial(const ddm::TrialId& id) override {
     x_.clear();
-    rng_ = ddm::randomStream(id, ddm::StreamRole::kPlannerStarts);  // equal trials, equal torques
+    // The same trial draws the same torques.
+    rng_ = ddm::randomStream(id, ddm::StreamRole::kPlannerStarts);
   }
   void startSegment() override { x_.clear(); }
   void setGoal(const ddm::Grey& goal) override { z_ref_ = model_->encode(goal); }
@@ -57,7 +59,7 @@ class ShootingPolicy : public ddm::Policy {
 
  private:
   std::shared_ptr<const ddm::Ddm> model_;
-  std::uniform_real_distribution<double> uniform_;  // torques [N m]
+  std::uniform_real_distribution<double> uniform_;  // random torques [N m]
   Eigen::VectorXd z_ref_;
   ddm::History x_;
   std::mt19937_64 rng_;

@@ -1,4 +1,4 @@
-// Everything in this process: plant, recorder, and who learns and acts, without a ROS master.
+// Driver that runs plant, recorder and learner in one process, without a ROS master.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "in_process_driver.h"
 
@@ -17,7 +17,7 @@
 namespace ddm {
 namespace {
 
-/// Stamp of an image of a trial that begins at one second, like sim_node's first.
+/// Stamp of the current image. The clock of an episode begins at 1 s, as in sim_node.
 ros::Time stampOf(const Environment& environment) {
   const auto step_ns =
       static_cast<std::uint64_t>(std::llround(environment.plant().info().dt * 1e9));
@@ -25,7 +25,7 @@ ros::Time stampOf(const Environment& environment) {
          ros::Duration().fromNSec(static_cast<std::int64_t>(environment.numSteps() * step_ns));
 }
 
-/// An image and the torque that answers it.
+/// Writes an image and the torque that the policy chose on it.
 void write(const sensor_msgs::Image& image, const Decision& decision, BagWriter* bag) {
   ddm_msgs::Torque torque;
   torque.header.stamp = image.header.stamp;
@@ -57,7 +57,8 @@ void runClosedLoop(Environment* environment, std::shared_ptr<Policy> policy,
     if (frame.index > 0) {
       const std::uint64_t steps = environment->numSteps();
       picture = environment->stepUntilSeen(frame.decision.torque);
-      if (environment->numSteps() > steps + 1) explorer.startSegment();  // an image was lost
+      // After a lost image, a new segment begins.
+      if (environment->numSteps() > steps + 1) explorer.startSegment();
     }
     frame.image = imageMessage(picture, stampOf(*environment), optical_frame);
     frame.grey = decodeImage(frame.image, image_size);

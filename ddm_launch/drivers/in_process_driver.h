@@ -1,4 +1,4 @@
-// Everything in this process: plant, recorder, and who learns and acts, without a ROS master.
+// Driver that runs plant, recorder and learner in one process, without a ROS master.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -16,30 +16,32 @@
 
 namespace ddm {
 
-/// An image that was seen, and what was decided on it. The environment is where it was rendered.
+/// One image and the decision that the policy made on it. The environment is in the state that the
+/// image shows.
 struct ClosedLoopFrame {
-  int index = 0;  ///< among the images seen
+  int index = 0;  ///< number of the image in this episode, from 0
   sensor_msgs::Image image;
-  Grey grey;  ///< of the image, as the learner gets it
+  Grey grey;  ///< the image as the learner receives it
   Decision decision;
 };
 
-/// The closed loop of a trial in one process: what is seen is decided on, and what is decided acts.
-/// Time goes on where an image is lost. The goal is that of the trial.
-/// @param policy  may be null where the trial is random
-/// @param take    called for each image before its torque acts; the last torque does not act
-/// @throws std::invalid_argument if the policy is null where it is needed
+/// Runs the closed loop of one episode: the policy decides on each image, and its torque acts until
+/// the next image. If an image is lost, the torque acts for another time step. The goal is that of
+/// the trial.
+/// @param policy  may be null if all torques are random
+/// @param take    called for each image before its torque acts; the last torque never acts
+/// @throws std::invalid_argument if the policy is null but needed
 void runClosedLoop(Environment* environment, std::shared_ptr<Policy> policy,
                    const TrialRequest& request, const Configuration& configuration,
                    const std::function<void(const ClosedLoopFrame&)>& take);
 
-/// With the method `ddm` it does what the nodes do in lock-step, with the same cores and the same
-/// bags in between: the same configuration and seed give the same torques.
+/// With the method `ddm`, this driver does the same as the nodes do in lock-step, with the same
+/// code and the same bags. The same configuration and seed therefore give the same torques.
 class InProcessDriver : public Driver {
  public:
-  /// @param configuration  with a method; outlives the driver
-  /// @throws std::invalid_argument if the configuration asks for real time, or does not fit the
-  /// method
+  /// @param configuration  configuration read by readWithMethod(); must outlive the driver
+  /// @throws std::invalid_argument if the configuration asks for real time or does not fit the
+  ///         method
   explicit InProcessDriver(const Configuration& configuration);
 
   TrialOutcome runTrial(const TrialRequest& request, const PhaseCallback& progress) override;

@@ -1,4 +1,4 @@
-// ROS nodes as the driver: plant, recorder, trainer and policy behind services and actions.
+// Driver that runs trials and trainings through the services and actions of ROS nodes.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ros_driver.h"
 
@@ -23,17 +23,17 @@ namespace ddm {
 namespace {
 
 constexpr std::uint32_t kThreads = 2;
-constexpr char kBagUnderWay[] = "";             // for StartRecording
-constexpr std::chrono::milliseconds kLook(20);  // between checks of conditions without a callback
+constexpr char kBagUnderWay[] = "";             // StartRecording: continue with the open bag
+constexpr std::chrono::milliseconds kLook(20);  // period for conditions without a callback
 
-/// For action clients.
+/// Node handle for the action clients, whose callbacks go to `queue`.
 ros::NodeHandle withQueue(ros::NodeHandle nh, ros::CallbackQueue* queue, double limit) {
   waitForSimulatedTime(limit);
   nh.setCallbackQueue(queue);
   return nh;
 }
 
-/// Resolved names of what the nodes of the loop tell each other.
+/// Resolved names of the topics between the nodes of the control loop.
 std::vector<std::string> loopTopics(const ros::NodeHandle& nh) {
   std::vector<std::string> names;
   for (const char* topic : {topics::kImage, topics::kTorque, topics::kAppliedTorque,
@@ -58,7 +58,7 @@ RosDriver::RosDriver(const ros::NodeHandle& nh, double timeout, Peers peers)
       spinner_(kThreads, &callbacks_) {
   ros::NodeHandle quiet_nh(nh_);
   quiet_nh.setCallbackQueue(&ground_truth_queue_);
-  // Of any length: whoever is told of progress may hold up the thread that empties it.
+  // The queue has no limit, because a progress callback may block the thread that empties it.
   ground_truth_sub_ = quiet_nh.subscribe<sensor_msgs::JointState>(
       topics::kGroundTruth, 0, [this](const sensor_msgs::JointStateConstPtr& state) {
         if (keeps_ground_truth_) ground_truth_[state->header.stamp] = *state;
@@ -69,8 +69,8 @@ RosDriver::RosDriver(const ros::NodeHandle& nh, double timeout, Peers peers)
     changed_.notify_all();
   };
   model_sub_ = nh_.subscribe<ddm_msgs::Model>(topics::kModel, 1, on_model);
-  // Not before: an action client that is still being made drops the server's first status, and in
-  // simulated time that stands still there is no second one.
+  // The spinner starts after the action clients are complete. An incomplete client drops the first
+  // status of its server, and while simulated time stands still, the server sends no second one.
   spinner_.start();
   connect();
 }
@@ -97,8 +97,9 @@ void RosDriver::connect() {
     return "nodes do not find each other: check ROS_HOSTNAME or ROS_IP on each machine\n - " +
            boost::algorithm::join(missing, "\n - ");
   });
-  // Before a process logs its first line roscpp asks the master for a parameter: one that is
-  // stopped later would keep the process from telling it.
+  // Before a process logs its first line, roscpp reads a parameter from the master. If the master
+  // has been stopped by then, the process cannot log the reason. This line makes roscpp read it
+  // now.
   ROS_INFO("all nodes are there and connected");
 }
 
@@ -107,9 +108,9 @@ void RosDriver::signOfLife() {
   last_sign_of_life_ = ros::SteadyTime::now();
 }
 
-/// Waits for a condition, which is checked whenever a callback has changed something.
-/// @param what  says what is missing: without the lock, since it may ask the master
-/// @throws std::runtime_error if nobody gave a sign of life within the timeout, or on shutdown
+/// Waits for a condition, which is checked after each callback that changed something.
+/// @param what  describes what is missing; called without the lock, as it may call the master
+/// @throws std::runtime_error on shutdown, or if no message or progress came within the timeout
 void RosDriver::waitFor(const std::function<bool()>& condition,
                         const std::function<std::string()>& what) {
   for (;;) {
@@ -131,15 +132,15 @@ void RosDriver::call(const char* topic, Service* service, double limit) {
   signOfLife();
 }
 
-/// Sends a goal and waits for its result; feedback is a sign of life.
-/// @param fraction_of  a feedback: the fraction that is done
+/// Sends a goal and waits for its result. Each feedback restarts the timeout.
+/// @param fraction_of  maps a feedback to the fraction that is done
 template <class Client, class Goal, class FractionOf>
 auto RosDriver::execute(Client* client, const std::string& name, const Goal& goal,
                         const FractionOf& fraction_of, const PhaseCallback& progress) {
-  // Callbacks may still come when this function has returned: they share what they write.
+  // Callbacks may run after this function has returned. The shared pointer keeps their data alive.
   struct Pending {
     bool done = false;
-    std::optional<double> fraction;  // that nobody has been told yet
+    std::optional<double> fraction;  // latest progress that has not been reported yet
   };
   const auto pending = std::make_shared<Pending>();
   const auto on_done = [this, pending](const actionlib::SimpleClientGoalState&, const auto&) {
@@ -153,7 +154,7 @@ auto RosDriver::execute(Client* client, const std::string& name, const Goal& goa
     pending->fraction = fraction_of(*feedback);
     changed_.notify_all();
   };
-  // Progress is told by this thread and without the lock: a terminal may hold up who writes to it.
+  // Progress is reported without the lock, because writing to a terminal may block.
   const auto is_done = [&] {
     std::unique_lock<std::mutex> lock(mutex_);
     const bool done = pending->done;
@@ -163,8 +164,8 @@ auto RosDriver::execute(Client* client, const std::string& name, const Goal& goa
     return done;
   };
   signOfLife();
-  // The client knows its goal only when sendGoal() returns: to an answer that is faster it says
-  // that it tracks no such goal, and of one that is done it would take the state for lost.
+  // The client registers its goal only when sendGoal() returns. It would ignore an earlier answer,
+  // and it would report an earlier result as a lost goal. No callback may run until then.
   spinner_.stop();
   client->sendGoal(goal, on_done, typename Client::SimpleActiveCallback(), on_feedback);
   spinner_.start();
@@ -190,7 +191,9 @@ auto RosDriver::execute(Client* client, const std::string& name, const Goal& goa
   throw std::runtime_error("action " + name + ": " + reason);
 }
 
-/// A bag does not say who published what is in it: a trial counts only if one node could have.
+/// Checks that each topic of the control loop has one publisher. A bag does not tell publishers
+/// apart, so that messages of a second publisher would corrupt the recording.
+/// @throws std::runtime_error naming the topics with several publishers
 void RosDriver::refuseIntruders() const {
   std::vector<std::string> names = loopTopics(nh_);
   names.emplace_back("/clock");
@@ -203,12 +206,13 @@ void RosDriver::refuseIntruders() const {
 }
 
 TrialOutcome RosDriver::runTrial(const TrialRequest& request, const PhaseCallback& progress) {
-  // Before the reset, which may show the first image at once.
+  // The recording starts before the reset, because the reset may produce the first image at once.
   if (!request.bag.empty()) startRecording(request.bag, last_image_);
-  ground_truth_.clear();  // of a trial that failed
+  ground_truth_.clear();  // states of an earlier trial that failed
   keeps_ground_truth_ = true;
   const ddm_msgs::Reset::Response begin = reset(request);
-  // The clock was set back since the last trial, whose stamps say nothing about this one.
+  // If the clock has been set back since the last trial, stamps of that trial cannot be compared
+  // with those of this one.
   const bool set_back = !begin.start.isZero() && begin.start <= last_image_;
   if (!request.bag.empty() && set_back) startRecording(kBagUnderWay, /*after=*/ros::Time());
   const bool truth_is_due = ground_truth_sub_.getNumPublishers() > 0;
@@ -288,8 +292,9 @@ ddm_msgs::RunTrialResult RosDriver::runPolicy(const TrialRequest& request,
   return result;
 }
 
-/// Stores the true state at each image that was answered; in real time there are states in between.
-/// If the simulator has left since the trial began, this fails, because success would stay unknown.
+/// Stores the true state at each image that was answered. In real time, there are more states than
+/// images. Throws if the simulator has stopped since the trial began, because the success of the
+/// trial could not be determined.
 void RosDriver::takeGroundTruth(const std::vector<ros::Time>& stamps, TrialOutcome* outcome) {
   const auto is_known = [this](const ros::Time& stamp) { return ground_truth_.count(stamp) > 0; };
   waitFor([&] { return std::all_of(stamps.begin(), stamps.end(), is_known); },
@@ -316,7 +321,7 @@ TrainingOutcome RosDriver::train(const std::vector<std::string>& bags, const Tri
       &train_client_, nh_.resolveName(topics::kTrain), goal,
       [](const ddm_msgs::TrainFeedback& feedback) { return feedback.fraction_done; }, progress);
   model_id_ = result.model_id;
-  model_pub_.shutdown();  // nobody who comes later shall get the saved model
+  model_pub_.shutdown();  // the publisher is latched: later subscribers must not get the old model
   TrainingOutcome outcome;
   outcome.files["model.ddm"] = takeModel(result.model_id);
   outcome.frames = result.frames;

@@ -1,4 +1,4 @@
-// ROS nodes as the driver: plant, recorder, trainer and policy behind services and actions.
+// Driver that runs trials and trainings through the services and actions of ROS nodes.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -22,23 +22,23 @@
 
 namespace ddm {
 
-/// Orders the nodes about; computes nothing. All waits go by the monotonic clock, because simulated
-/// time stands still while a model is trained and wall time can be set, and all end with an error
-/// that names who is silent.
-/// Callbacks, except those of ground truth, are handled in threads of its own; progress is reported
-/// by the thread that waits.
+/// Calls the nodes in the right order; computes nothing itself. All time limits use the monotonic
+/// clock, because simulated time stands still during a training and wall time can be set. Each wait
+/// ends with an error that names the silent node. Callbacks run in the threads of this object,
+/// except those of ground truth. Progress is reported by the waiting thread.
 class RosDriver : public Driver {
  public:
+  /// Optional nodes that the driver uses, and a time limit of the robot.
   struct Peers {
-    bool recorder = true;  ///< trials are recorded
-    bool trainer = true;   ///< models are trained
-    /// Wall time that the robot itself allows for a reset [s]: a person may have to put it back.
+    bool recorder = true;  ///< whether a node records the trials
+    bool trainer = true;   ///< whether a node trains models
+    /// Wall time that the robot allows for a reset [s]. A person may have to put the robot back.
     double reset_timeout = 0.0;
   };
 
-  /// Waits until the nodes are there and connected to each other.
-  /// @param timeout  wall time without a sign of life [s]
-  /// @throws std::runtime_error naming what is missing
+  /// Waits until all nodes exist and are connected to each other.
+  /// @param timeout  longest wall time without any message or progress [s]
+  /// @throws std::runtime_error naming the missing nodes or connections
   RosDriver(const ros::NodeHandle& nh, double timeout, Peers peers);
   RosDriver(const RosDriver&) = delete;
   RosDriver& operator=(const RosDriver&) = delete;
@@ -47,7 +47,7 @@ class RosDriver : public Driver {
   TrainingOutcome train(const std::vector<std::string>& bags, const TrialId& id,
                         const PhaseCallback& progress) override;
 
-  /// Publishes it, until the trainer publishes its own.
+  /// Publishes a saved model. The trainer replaces the model after the next training.
   bool useModel(const std::string& path) override;
 
  private:
@@ -71,28 +71,29 @@ class RosDriver : public Driver {
   void waitFor(const std::function<bool()>& condition, const std::function<std::string()>& what);
 
   ros::CallbackQueue callbacks_;
-  ros::NodeHandle nh_;  // with that queue
-  /// Emptied now and then by the thread that waits: a thread of its own would wake for each frame.
+  ros::NodeHandle nh_;  // uses `callbacks_`
+  /// The waiting thread empties this queue from time to time. A thread of its own would wake up for
+  /// each sample.
   ros::CallbackQueue ground_truth_queue_;
-  std::map<ros::Time, sensor_msgs::JointState> ground_truth_;  // of the last trial, by stamp
-  bool keeps_ground_truth_ = false;                            // a trial is under way
+  std::map<ros::Time, sensor_msgs::JointState> ground_truth_;  // of the latest episode, by stamp
+  bool keeps_ground_truth_ = false;                            // true while an episode runs
   double timeout_;
   Peers peers_;
   std::string model_id_;
-  ros::Time last_image_;  // of the last trial
+  ros::Time last_image_;  // stamp of the last image of the latest episode
 
-  std::mutex mutex_;  // guards what callbacks write, below
+  std::mutex mutex_;  // guards the members that callbacks write, below
   std::condition_variable changed_;
   ros::SteadyTime last_sign_of_life_;
   ddm_msgs::ModelConstPtr model_;
 
   actionlib::SimpleActionClient<ddm_msgs::RunTrialAction> trial_client_;
   actionlib::SimpleActionClient<ddm_msgs::TrainAction> train_client_;
-  std::map<std::string, ros::ServiceClient> service_clients_;  // by topic, since the first call
+  std::map<std::string, ros::ServiceClient> service_clients_;  // by topic, made by the first call
   ros::Subscriber ground_truth_sub_;
   ros::Subscriber model_sub_;
-  ros::Publisher model_pub_;   // of a saved model
-  ros::AsyncSpinner spinner_;  // last: begins when all of the above is there, and ends first
+  ros::Publisher model_pub_;   // publishes a saved model
+  ros::AsyncSpinner spinner_;  // last member: it must start after and stop before all others
 };
 
 }  // namespace ddm

@@ -12,7 +12,7 @@
 namespace ddm {
 namespace {
 
-/// The steps of Algorithm 1. Each one does nothing where an earlier call has done it.
+/// The steps of Algorithm 1. Each step does nothing if an earlier call has completed the step.
 class Algorithm1 {
  public:
   Algorithm1(const Configuration& configuration, Driver* driver, RunFolder* folder,
@@ -38,7 +38,7 @@ class Algorithm1 {
   Driver& driver_;
   RunFolder& folder_;
   Progress& progress_;
-  std::unique_ptr<Plant> plant_;  // tells the error of a state; never simulated
+  std::unique_ptr<Plant> plant_;  // only computes errors of recorded states; it is not simulated
 };
 
 }  // namespace
@@ -71,9 +71,9 @@ void runExperiment(const Configuration& configuration, Driver* driver, RunFolder
 
 namespace {
 
-/// "Follow a random control strategy and record data" in trial 0; later "u*_t <- epsilon-greedy MPC
-/// policy using DDM prediction; apply u*_t and record data" for t = 0 ... N - 1. The policy itself,
-/// (8) to (10), is MpcPolicy in ddm_mpc.
+/// Algorithm 1: "Follow a random control strategy and record data" in trial 0; in later trials
+/// "u*_t <- epsilon-greedy MPC policy using DDM prediction; apply u*_t and record data" for t = 0
+/// ... N - 1. MpcPolicy in ddm_mpc implements the policy itself, eqs. (8) to (10).
 void Algorithm1::recordTrial(int trial) {
   const bool random = trial == 0 && configuration_.start.empty();
   progress_.beginPhase(trial, random ? "random" : "explore");
@@ -86,7 +86,8 @@ void Algorithm1::recordTrial(int trial) {
       continue;
     }
     TrialRequest request = requestFor(configuration_, trial, /*evaluation=*/false);
-    request.id.trial = static_cast<std::uint32_t>(trial * episodes + episode);  // its own draws
+    // Each episode needs its own index, which selects its random draws.
+    request.id.trial = static_cast<std::uint32_t>(trial * episodes + episode);
     request.epsilon = random ? 1.0 : configuration_.mpc.epsilon;
     request.bag = newBag(run);
     const double done = static_cast<double>(episode) / episodes;
@@ -94,8 +95,8 @@ void Algorithm1::recordTrial(int trial) {
   }
 }
 
-/// "Update DDM with all data collected so far": the joint training (5a) to (5c) is train() in
-/// ddm_model.
+/// Algorithm 1: "Update DDM with all data collected so far". train() in ddm_model implements the
+/// joint training, eqs. (5a) to (5c).
 TrainingOutcome Algorithm1::updateModel(int trial) {
   const TrialId id = requestFor(configuration_, trial, /*evaluation=*/false).id;
   const std::vector<std::string> bags = folder_.bagsUpTo(trial);
@@ -110,7 +111,8 @@ TrainingOutcome Algorithm1::updateModel(int trial) {
   return outcome;
 }
 
-/// How good the model is: a greedy run (epsilon = 0), which is not learned from (Sec. 4.2).
+/// Evaluates the model in a greedy episode (epsilon = 0). The learner never trains on this episode
+/// (paper, Sec. 4.2).
 TrialOutcome Algorithm1::evaluate(int trial) {
   progress_.beginPhase(trial, "evaluate");
   const RunId run = {trial, /*evaluation=*/true};
@@ -121,7 +123,7 @@ TrialOutcome Algorithm1::evaluate(int trial) {
   return greedy;
 }
 
-/// Writes the row of trials.csv: from here on the trial is never run again.
+/// Writes the row of trials.csv. A trial that has a row is never run again.
 void Algorithm1::finish(int trial, const TrainingOutcome& training, const TrialOutcome& greedy) {
   TrialRow row = rowOf(requestFor(configuration_, trial, /*evaluation=*/true).id, greedy,
                        configuration_.evaluation, plant_.get());
@@ -135,7 +137,7 @@ void Algorithm1::finish(int trial, const TrainingOutcome& training, const TrialO
   progress_.finishTrial(folder_.rows());
 }
 
-/// A path for the bag of a run. Bags of an earlier try are kept under other names.
+/// Returns a path for the bag of an episode. Bags of an earlier attempt are renamed and kept.
 std::string Algorithm1::newBag(const RunId& run) {
   std::vector<std::string> kept;
   const std::string bag = folder_.beginRun(run, &kept);

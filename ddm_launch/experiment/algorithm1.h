@@ -12,17 +12,19 @@
 
 namespace ddm {
 
-/// Follow a random control strategy and record; then, trial by trial: train on everything recorded,
-/// evaluate greedily, run an epsilon-greedy trial and record (paper, Alg. 1).
+/// Runs Algorithm 1 of the paper. Records one trial with random torques. Then repeats three steps:
+/// trains on all data recorded so far, runs a greedy evaluation, records an epsilon-greedy trial.
 ///
-/// Where the configuration has a start, its bags are trials before the first one, and that one is
-/// epsilon-greedy, not random: with the model of the start, else with one trained on its bags.
+/// If the configuration has a block `start`, its bags count as trials before trial 0, and trial 0
+/// is epsilon-greedy instead of random. The model of trial 0 is that of `start`, or one trained on
+/// the bags of `start`.
 ///
-/// Resumes where an earlier call on the folder ended, however it ended. A complete recording is never
-/// repeated, and a training whose files are there is not either; a model that cannot be saved is
-/// trained again from the bags, with the same result. If all trials are finished already, only the
-/// time of the verdict changes.
-/// @param show  called with the rows of all finished trials, at the start and after each trial
+/// The function resumes an experiment that an earlier call began, even if that call was killed.
+/// Complete recordings and trainings are never repeated. The exception is a model that cannot be
+/// saved: it is trained again from the bags, with the same result. If all trials are finished
+/// already, only the modification time of summary.yaml changes.
+/// @param show  receives the rows of all finished trials at the start and after each trial
+/// @throws std::runtime_error naming the failure; all finished trials are kept
 /// @throws std::runtime_error with what failed; all finished trials are kept
 void runExperiment(
     const Configuration& configuration, Driver* driver, RunFolder* folder, Progress* progress,

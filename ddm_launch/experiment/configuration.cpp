@@ -1,4 +1,4 @@
-// The effective configuration of an experiment: every block that decides its outcome.
+// The effective configuration of an experiment: all blocks that affect its result.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "configuration.h"
 

@@ -1,4 +1,4 @@
-// The effective configuration of an experiment: every block that decides its outcome.
+// The effective configuration of an experiment: all blocks that affect its result.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -19,15 +19,15 @@
 
 namespace ddm {
 
-/// Block `experiment`: what is run. Set by launch arguments and options.
+/// Block `experiment`: what to run. Launch arguments and command line options set these values.
 struct ExperimentOptions {
   std::string preset = "paper";    ///< name of the preset
   std::string plant = "pendulum";  ///< name of the plant
-  std::string method = "ddm";      ///< who learns and acts, see method.h
+  std::string method = "ddm";      ///< name of the method, see method.h
   int seed = 0;                    ///< fixes every random draw
   int trials = 15;                 ///< epsilon-greedy trials after the random one [-]
-  std::string runs;                ///< folder for everything that the experiment leaves behind
-  double timeout = 60.0;           ///< nodes: wall time without a sign of life [s]
+  std::string runs;                ///< folder for all files of the experiment
+  double timeout = 60.0;           ///< nodes: longest wall time without any message or progress [s]
 
   template <class Visitor>
   void visit(Visitor& visitor) {
@@ -39,7 +39,7 @@ struct ExperimentOptions {
     visitor("runs", runs);
     visitor("timeout", timeout);
   }
-  /// Everything wrong with these values, in words a user can act on. Empty means valid.
+  /// All problems with these values, in words a user can act on. Empty if the values are valid.
   std::vector<std::string> problems() const {
     OptionChecks checks("experiment");
     checks.requireAtLeast("seed", seed, 0);
@@ -49,11 +49,12 @@ struct ExperimentOptions {
   }
 };
 
-/// Block `start`: what an experiment begins with instead of nothing. Completed by prepareStart().
+/// Block `start`: model and data that the experiment starts from. prepareStart() completes the
+/// block.
 struct StartOptions {
-  std::string model;                   ///< model file that trial 0 explores with; empty: none
-  std::vector<std::string> bags;       ///< trials before trial 0
-  std::vector<std::string> checksums;  ///< of the bags, then of the model
+  std::string model;                   ///< model file for the exploration of trial 0; empty: none
+  std::vector<std::string> bags;       ///< data of trials before trial 0
+  std::vector<std::string> checksums;  ///< one per bag, then that of the model
 
   bool empty() const { return model.empty() && bags.empty(); }
 
@@ -68,8 +69,8 @@ struct StartOptions {
 
 /// Block `trial`.
 struct TrialOptions {
-  int num_steps = 100;  ///< samples, each an image with its torque, of one episode [-]
-  int episodes = 1;     ///< episodes from fresh initial states that make up one trial [-]
+  int num_steps = 100;  ///< samples in one episode; a sample is an image and its torque [-]
+  int episodes = 1;     ///< episodes in one trial, each with its own initial state [-]
 
   template <class Visitor>
   void visit(Visitor& visitor) {
@@ -84,10 +85,10 @@ struct TrialOptions {
   }
 };
 
-/// Block `evaluation`: what the plant does not say about greedy runs.
+/// Block `evaluation`: settings of greedy evaluations that the plant does not define.
 struct EvaluationOptions {
   double goal_distance = 0.0;  ///< tolerance without ground truth [spread of features]; 0: none
-  bool record = false;         ///< write a bag of each greedy run
+  bool record = false;         ///< whether to write a bag of each evaluation
 
   template <class Visitor>
   void visit(Visitor& visitor) {
@@ -101,42 +102,45 @@ struct EvaluationOptions {
   }
 };
 
+/// All blocks of a configuration, and the plant that they describe.
 struct Configuration {
   ExperimentOptions experiment;
   StartOptions start;
   TrialOptions trial;
   EvaluationOptions evaluation;
   std::shared_ptr<const PlantPlugin> plant;
-  PlantInfo plant_info;  ///< of that plant
+  PlantInfo plant_info;  ///< properties of `plant`
   CameraOptions camera;
   SimOptions sim;
   ModelConfig model;
   MpcOptions mpc;
-  std::optional<RobotOptions> robot;  ///< empty: a simulated plant
-  YAML::Node method_blocks;           ///< those that experiment/method alone reads, by name
+  std::optional<RobotOptions> robot;  ///< empty if the plant is simulated
+  YAML::Node method_blocks;           ///< blocks that only experiment/method reads, by name
 };
 
-/// Names of the torques of a trial, with units, one for each motor: those of the robot where there
-/// is one, whatever the plant is.
+/// Column names of the torques of a trial, with units, one per motor. If a robot is configured, its
+/// motors count, not those of the plant.
 std::vector<std::string> torqueNames(const Configuration& configuration);
 
-/// Reads all blocks and checks each.
-/// @throws std::invalid_argument with all problems, one per line
+/// Reads all blocks and checks each block by itself.
+/// @throws std::invalid_argument listing all problems, one per line
 Configuration readEachBlock(ParamReader* reader);
 
 /// Checks that the blocks fit together.
-/// @throws std::invalid_argument with all contradictions, one per line
+/// @throws std::invalid_argument listing all contradictions, one per line
 void requireConsistent(const Configuration& configuration);
 
-/// Reads all blocks, checks each, and that they fit together.
-/// @throws std::invalid_argument with all problems, one per line
+/// Reads all blocks, checks each block, and checks that the blocks fit together.
+/// @throws std::invalid_argument listing all problems, one per line
 Configuration readConfiguration(ParamReader* reader);
 
-/// @throws std::invalid_argument if the schedule leaves f random, which no plan can follow
+/// Checks that the training schedule minimises V_P. Without V_P, the prediction model f keeps its
+/// random initial weights and cannot be used for planning.
+/// @throws std::invalid_argument if the schedule has no V_P
 void requireLearnedPrediction(const TrainingOptions& training);
 
-/// All blocks by name, in the order above, `start` only where it says something, those of the method
-/// last. `goal` is no block of options: it tells readers of the file what counts as success.
+/// All blocks by name in the order of Configuration. `start` is left out if it is empty. The block
+/// `goal` holds no options: it tells readers of the file which error counts as success.
 YAML::Node toYaml(const Configuration& configuration);
 
 }  // namespace ddm

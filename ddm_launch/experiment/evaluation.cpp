@@ -1,4 +1,4 @@
-// Evaluator: ground truth of a greedy run, or its features -> success and error, for every driver.
+// Computes the success and the error of a greedy evaluation from true states or from features.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "evaluation.h"
 
@@ -12,8 +12,9 @@
 namespace ddm {
 namespace {
 
-/// Whether the last images are all within the tolerance.
-/// @param errors  distance to the goal of each image, in whatever unit
+/// Checks whether the last images are all within the tolerance.
+/// @param errors     distance to the goal at each image, in any unit
+/// @param tolerance  largest distance that counts as success, in the same unit
 Evaluation settled(const std::vector<double>& errors, double tolerance) {
   const auto num_images = static_cast<int>(errors.size());
   int num_settled = 0;
@@ -27,7 +28,8 @@ Evaluation settled(const std::vector<double>& errors, double tolerance) {
   return evaluation;
 }
 
-/// @return value
+/// @return `value`
+/// @throws std::range_error naming plant and image if the value is not finite
 double requireFinite(double value, const std::string& what, const Plant& plant, std::size_t image) {
   if (std::isfinite(value)) return value;
   throw std::range_error("plant " + plant.info().type + ": the " + what + " of image " +
@@ -35,13 +37,13 @@ double requireFinite(double value, const std::string& what, const Plant& plant, 
                          ": correct the plant; the same command resumes with this evaluation");
 }
 
-/// Time steps between an image and the next one; 1 after the last.
+/// Number of time steps between an image and the next one; 1 after the last image.
 int stepsAfter(std::size_t image, const std::vector<double>& times, double dt) {
   if (image + 1 >= times.size()) return 1;
   return std::max(1, static_cast<int>(std::lround((times[image + 1] - times[image]) / dt)));
 }
 
-/// @return as Evaluation::total_reward
+/// @return see Evaluation::total_reward
 std::optional<double> totalReward(const Plant& plant, const std::vector<Eigen::VectorXd>& states,
                                   const std::vector<Eigen::VectorXd>& torques,
                                   const std::vector<double>& times) {
@@ -103,12 +105,12 @@ TrialRow rowOf(const TrialId& id, const TrialOutcome& greedy, const EvaluationOp
 }
 
 std::pair<double, double> wilsonInterval(int successes, int n) {
-  constexpr double kZ = 1.959963984540054;  // 97.5 % of N(0, 1) lie below
+  constexpr double kZ = 1.959963984540054;  // 97.5 % quantile of N(0, 1)
   const double rate = static_cast<double>(successes) / n;
   const double shrink = 1.0 / (1.0 + kZ * kZ / n);
   const double centre = shrink * (rate + kZ * kZ / (2.0 * n));
   const double half = shrink * kZ * std::sqrt(rate * (1.0 - rate) / n + kZ * kZ / (4.0 * n * n));
-  // Exactly 0 and 1 at the ends, where rounding would leave a little.
+  // The ends are exactly 0 and 1 for no and for only successes. The formulas would round.
   return {successes == 0 ? 0.0 : centre - half, successes == n ? 1.0 : centre + half};
 }
 

@@ -1,4 +1,4 @@
-// Evaluator: ground truth of a greedy run, or its features -> success and error, for every driver.
+// Computes the success and the error of a greedy evaluation from true states or from features.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -16,22 +16,21 @@
 
 namespace ddm {
 
-/// So many of the last images must be at the goal, or all where a run has fewer. The paper does not
-/// give a number; 3 to 10 images reproduce the curve of its PILCO baseline.
+/// Number of last images that must be within the tolerance (all images if an episode has fewer).
+/// The paper gives no number; 3 to 10 images reproduce the curve of its PILCO baseline.
 constexpr int kSettledSteps = 10;        // `success`
 constexpr int kSettledStepsStrict = 25;  // `success_strict`
 
-/// What a greedy run came to.
+/// Result of a greedy evaluation.
 struct Evaluation {
-  bool known = false;           ///< false: nothing to judge by
-  bool success = false;         ///< the last kSettledSteps images within the tolerance
-  bool success_strict = false;  ///< the last kSettledStepsStrict images within it
+  bool known = false;           ///< false without ground truth and without goal distances
+  bool success = false;         ///< the last kSettledSteps images are within the tolerance
+  bool success_strict = false;  ///< the last kSettledStepsStrict images are within the tolerance
   /// Plant::goalError() at the last image; empty without ground truth.
   std::optional<double> final_error;
-  /// Sum of Plant::stepReward() over as many steps as there are images, from the first image on:
-  /// those between two images count whether the camera showed them or not, and a run that took
-  /// longer because images were lost earns no more for it. Empty without ground truth, or if the
-  /// plant has none.
+  /// Sum of Plant::stepReward() over N time steps from the first of N images on. Steps whose image
+  /// was lost count too, so that an evaluation with lost images, which takes longer, earns no extra
+  /// reward. Empty without ground truth or if the plant has no reward.
   std::optional<double> total_reward;
 };
 
@@ -41,47 +40,52 @@ struct TrialRow {
   int trial = 0;
   std::uint32_t frames = 0;
   Evaluation evaluation;
-  std::optional<double> v_r;  ///< empty: the method has none
-  std::optional<double> v_p;
-  double train_s = 0.0;
+  std::optional<double> v_r;  ///< V_R [grey^2]; empty if the method has no auto-encoder
+  std::optional<double> v_p;  ///< V_P [grey^2]; empty if the method has no such error
+  double train_s = 0.0;       ///< wall time of the training [s]
   std::uint32_t train_evaluations = 0;
   double plan_ms_median = 0.0;
   double plan_ms_p99 = 0.0;
-  std::string version = "?";  ///< of the code that produced the row; "?": not known
+  std::string version = "?";  ///< version of the code that wrote the row; "?" if it is unknown
 };
 
-/// @param plant    with the goal of this run, see Plant::setGoal()
-/// @param states   the plant's state at each image; empty: no ground truth
-/// @param torques  one for each image
-/// @param times    of the images [s], each torque acts until the next one; empty: none was lost
-/// @throws std::range_error with plant, image and value if an error or reward is not finite
+/// Judges an evaluation with N images by its true states.
+/// @param plant    plant whose goal is that of the evaluation, see Plant::setGoal()
+/// @param states   N true states of the plant; empty without ground truth
+/// @param torques  N torques [N m]
+/// @param times    N stamps of the images [s]; torque k acts from times[k] to times[k + 1]. Empty
+///                 if no image was lost
+/// @throws std::range_error naming plant, image and value if an error or reward is not finite
 Evaluation evaluate(const Plant& plant, const std::vector<Eigen::VectorXd>& states,
                     const std::vector<Eigen::VectorXd>& torques,
                     const std::vector<double>& times = {});
 
-/// The same by the features that the policy saw, where nobody tells the true state.
-/// @param goal_distances  of each image, see Policy::goalDistance(); empty: nothing is known
+/// Judges an evaluation by the features of its images, for plants without ground truth.
+/// @param goal_distances  Policy::goalDistance() of each image; if empty, the result is unknown
 Evaluation evaluateFeatures(const std::vector<double>& goal_distances,
                             const EvaluationOptions& options);
 
-/// A run of a trial as the configuration has it, but greedy and not recorded. An evaluation is as
-/// long as the plant says, or else as a trial.
-/// @param evaluation  the greedy run after the trial
+/// The request for one episode: a recorded trial or its greedy evaluation (epsilon = 0, no bag).
+/// The caller sets epsilon and bag of a trial. The plant may define the length of an evaluation;
+/// otherwise the evaluation is as long as an episode of a trial.
+/// @param evaluation  true for the greedy evaluation after the trial
 TrialRequest requestFor(const Configuration& configuration, int trial, bool evaluation);
 
-/// The columns of a row of trials.csv that follow from the evaluation; the others keep their defaults.
-/// @param plant  its goal is set to that of the evaluation
+/// Fills the columns of trials.csv that follow from an evaluation. All other columns keep their
+/// default values.
+/// @param plant  changed: its goal becomes that of the evaluation
 TrialRow rowOf(const TrialId& id, const TrialOutcome& greedy, const EvaluationOptions& options,
                Plant* plant);
 
-/// Wilson's 95 % interval: the rates p that so many successes in n runs do not speak against.
+/// Wilson's 95 % interval: all success rates p that are consistent with the observed successes.
 ///
 ///   |successes / n - p| <= 1.96 sqrt(p (1 - p) / n),   solved for p
 ///
-/// @return low and high, within [0, 1]
+/// @return lower and upper end, within [0, 1]
 std::pair<double, double> wilsonInterval(int successes, int n);
 
-/// The value that a fraction q of all values does not exceed, by nearest rank; 0 if there are none.
+/// The smallest value that at least a fraction q of all values does not exceed (nearest rank); 0 if
+/// there are no values.
 double quantile(std::vector<double> values, double q);
 
 }  // namespace ddm

@@ -73,7 +73,7 @@ void Progress::finishTrial(const std::vector<TrialRow>& rows) {
   if (row.evaluation.known) {
     success_so_far_ = str(format("success %d of %d") % countSuccesses(rows) % rows.size());
   }
-  // No more than 80 columns: a line that wraps is hard to read, and cannot be wiped.
+  // At most 80 columns: a terminal wraps a longer line, and then wipe() cannot erase it.
   const format training = row.v_r && row.v_p ? format("V_R %8.3g  V_P %8.3g") % *row.v_r % *row.v_p
                                              : format("trained in %6.1f s") % row.train_s;
   *out_ << format("trial %2d/%d  %5u frames  %s  %s") % row.trial % num_trials_ % row.frames %

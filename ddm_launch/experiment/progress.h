@@ -11,24 +11,24 @@
 
 namespace ddm {
 
-/// One line that is drawn over itself while a phase runs (terminals only), and one lasting line per
-/// finished trial.
+/// Prints one lasting line per finished trial. On a terminal, also redraws one line while a phase
+/// runs.
 class Progress {
  public:
-  /// On the standard output.
+  /// Prints to the standard output.
   explicit Progress(int num_trials = 0, std::string error_unit = "");
 
-  /// @param live        out is a terminal: draw the moving line
+  /// @param live        whether `out` is a terminal, on which the progress line is redrawn
   /// @param num_trials  epsilon-greedy trials of the whole experiment
-  /// @param error_unit  of the plant's error
+  /// @param error_unit  unit of Plant::goalError()
   Progress(std::ostream* out, bool live, int num_trials, std::string error_unit = "");
-  ~Progress() { wipe(); }  // what comes next, an error perhaps, begins a line of its own
+  ~Progress() { wipe(); }  // later output, for example an error message, begins on an empty line
 
   void note(const std::string& text);
   void beginPhase(int trial, const std::string& phase);
   /// @param fraction  of the phase that is done, in [0, 1]
   void update(double fraction);
-  /// @param rows  of all trials so far, the last one just finished
+  /// @param rows  rows of all finished trials; the last row is new
   void finishTrial(const std::vector<TrialRow>& rows);
   void summary(const std::vector<TrialRow>& rows, const std::string& folder, double wall_s);
 

@@ -1,4 +1,4 @@
-// How a configuration comes about: the files that make it up and what the user gave, in one order.
+// Merges the configuration files and the values of the user into one configuration.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "resolution.h"
 
@@ -41,8 +41,8 @@ std::string packageFolder(const std::string& package) {
   return path;
 }
 
-/// ddm_launch/config/presets/NAME.yaml
-/// @throws std::invalid_argument listing those that exist, if there is no such file
+/// Path of ddm_launch/config/presets/NAME.yaml.
+/// @throws std::invalid_argument listing the presets that exist, if there is no such file
 std::string presetFile(const std::string& name) {
   const std::string path = packageFolder("ddm_launch") + "/config/presets";
   std::set<std::string> names;
@@ -53,13 +53,13 @@ std::string presetFile(const std::string& name) {
   throw std::invalid_argument("unknown preset '" + name + "': there are " + join(names, ", "));
 }
 
-/// config/named.yaml: configurations by name, by group.
+/// Content of config/named.yaml: group -> name -> configuration.
 YAML::Node namedConfigurations() {
   return readBlocks(packageFolder("ddm_launch") + "/config/named.yaml");
 }
 
-/// The file of this path, or a configuration by its name, GROUP/NAME.
-/// @throws std::invalid_argument listing the names that exist, if there is neither
+/// Reads a configuration, which is given by the path of a file or by its name GROUP/NAME.
+/// @throws std::invalid_argument listing the names that exist, if there is no such file or name
 Layer layerOf(const std::string& config) {
   if (fs::path(config).extension() == ".yaml" || fs::exists(config)) {
     return {config, readBlocks(config)};
@@ -76,7 +76,7 @@ Layer layerOf(const std::string& config) {
                               "': it is not a file, and there are " + join(known, ", "));
 }
 
-/// The parameter references, where each option has its default and its explanation.
+/// The parameter references, which hold and explain the default of each option.
 std::vector<Layer> defaults() {
   std::vector<Layer> layers;
   for (const auto& [package, file] : {std::pair("ddm_sim", "config/sim.yaml"),
@@ -89,7 +89,7 @@ std::vector<Layer> defaults() {
   return layers;
 }
 
-/// BLOCK/KEY, if it is there and has this type.
+/// The value of BLOCK/KEY; empty if the key is missing or its value has another type.
 template <class Value>
 std::optional<Value> valueAt(const YAML::Node& blocks, const std::string& block,
                              const std::string& key) {
@@ -98,8 +98,8 @@ std::optional<Value> valueAt(const YAML::Node& blocks, const std::string& block,
   return value;
 }
 
-/// Preset, plant or method: the last layer that names it decides. A plant's file is found from any
-/// folder.
+/// The preset, plant or method that the last layer with such an entry names. The path of a plant's
+/// file becomes absolute, because other programs may run in another folder.
 std::string chosen(const std::string& kind, const std::vector<Layer>& layers) {
   std::string name;
   for (const Layer& layer : layers) {
@@ -112,21 +112,22 @@ std::string chosen(const std::string& kind, const std::vector<Layer>& layers) {
 /// Whether the user, the preset, the plant or another layer above the defaults gives BLOCK/KEY.
 using Given = std::function<bool(const std::string& block, const std::string& key)>;
 
-/// Sets a value that follows from others. The reader refuses a block that is not a map.
+/// Sets a value that is derived from other values. If the block is not a map, nothing is set and
+/// the reader reports the block.
 void follow(const std::string& block, const std::string& key, const YAML::Node& value,
             YAML::Node* blocks) {
   const YAML::Node values = (*blocks)[block];
   if (!values.IsDefined() || values.IsMap()) (*blocks)[block][key] = YAML::Clone(value);
 }
 
-/// What a learner must know about its motors is written once: `max_torque` of the robot, without a
-/// robot of the plant, which a model file may hold.
+/// Motors of the robot, or of the plant if there is no robot. `max_torque` is written only there
+/// (possibly in the plant's model file), and the blocks of the learner take it over.
 struct Motors {
-  YAML::Node limits;  ///< a number that holds for all motors, or one for each
+  YAML::Node limits;  ///< one limit for all motors, or a list with one limit per motor [N m]
   int count = 1;
 };
 
-/// Empty where the robot or the plant does not say, or is wrong: its reader reports what is wrong.
+/// Empty if robot or plant gives no valid limits; its own reader reports the problem.
 std::optional<Motors> motorsOf(const YAML::Node& blocks) {
   if (blocks["robot"].IsDefined()) {
     if (!hasKey(blocks, "robot", "max_torque")) return std::nullopt;
@@ -149,7 +150,8 @@ std::optional<Motors> motorsOf(const YAML::Node& blocks) {
   }
 }
 
-/// @throws std::invalid_argument if another number of motors is given
+/// Derives `max_torque` and `torque_dim` of the learner from the motors.
+/// @throws std::invalid_argument if a given torque_dim is not the number of motors
 void shareMotors(const Given& given, YAML::Node* blocks) {
   const std::optional<Motors> motors = motorsOf(*blocks);
   if (!motors) return;
@@ -161,19 +163,19 @@ void shareMotors(const Given& given, YAML::Node* blocks) {
     return;
   }
   const auto torque_dim = valueAt<int>(*blocks, "controller", "torque_dim");
-  if (!torque_dim || torque_dim == motors->count) return;  // the reader refuses anything else
+  if (!torque_dim || torque_dim == motors->count) return;  // the reader reports other types
   throw std::invalid_argument(
       "controller/torque_dim must be the number of motors of robot or "
       "plant, " +
       std::to_string(motors->count) + ", got " + std::to_string(*torque_dim) + ": leave it out");
 }
 
-/// The controller's time step is that of what it controls. In real time a plan has to be there
-/// before the next image.
+/// Derives the time step of the controller from robot or plant. In real time, a plan must be ready
+/// before the next image, so that mpc/time_budget becomes half a time step.
 void shareTimeStep(const Given& given, YAML::Node* blocks) {
   const bool robot = (*blocks)["robot"].IsDefined();
   auto dt = valueAt<double>(*blocks, robot ? "robot" : "plant", "dt");
-  if (robot && !dt) dt = RobotOptions().dt;  // robot.yaml is read where robot_node runs
+  if (robot && !dt) dt = RobotOptions().dt;  // robot.yaml may be read on the robot's computer only
   if (!dt) return;
   follow("controller", "dt", valueToYaml(*dt), blocks);
   const bool lockstep = valueAt<bool>(*blocks, "sim", "lockstep").value_or(true);
@@ -181,7 +183,8 @@ void shareTimeStep(const Given& given, YAML::Node* blocks) {
   follow("mpc", "time_budget", valueToYaml(0.5 * *dt), blocks);
 }
 
-/// @throws std::invalid_argument if torques could reach a robot's motors without its guards
+/// @throws std::invalid_argument if mpc_node would send torques to the motors of a robot directly,
+///         without the safety checks of robot_node
 void requireOneWayToTheMotors(const YAML::Node& blocks) {
   if (!blocks["robot"].IsDefined()) return;
   if (!valueAt<bool>(blocks, "controller", "publish_effort").value_or(false)) return;
@@ -209,7 +212,8 @@ ResolvedConfiguration resolve(const Arguments& arguments) {
     return config.blocks["version"].IsDefined();
   });
   if (saved != configs.end()) {
-    // It holds every value of its preset, plant and method: another name would change no value.
+    // The file holds every value of its preset, plant and method. A different name would have no
+    // effect.
     for (const auto& [kind, name] : names) {
       const std::string saved_name = chosen(kind, {*saved});
       if (name == saved_name) continue;
@@ -237,7 +241,7 @@ ResolvedConfiguration resolve(const Arguments& arguments) {
     resolved.sources += (resolved.sources.empty() ? "" : ", ") + layer.file;
   }
   if (values["start"].IsDefined() && resolved.blocks["start"].IsMap()) {
-    resolved.blocks["start"].remove("checksums");  // of other files
+    resolved.blocks["start"].remove("checksums");  // they belong to the files that `values` replace
   }
   overlay(values, &resolved.blocks);
   follow("experiment", "plant", YAML::Node(names["plant"]), &resolved.blocks);

@@ -1,4 +1,4 @@
-// How a configuration comes about: the files that make it up and what the user gave, in one order.
+// Merges the configuration files and the values of the user into one configuration.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -12,11 +12,13 @@
 
 namespace ddm {
 
-/// What the user gave, and nothing else.
+/// What the user gave on the command line or in a launch file.
 struct Arguments {
-  std::vector<std::string> defaults;  ///< as configs, but of a launch file: preset and plant win
-  std::vector<std::string> configs;   ///< GROUP/NAME of config/named.yaml, or files; later ones win
-  YAML::Node values{YAML::NodeType::Map};  ///< single values, blocks by name
+  /// Configurations of a launch file, as `configs`, but preset, plant and method override them.
+  std::vector<std::string> defaults;
+  /// YAML files, or names GROUP/NAME in config/named.yaml. Later entries override earlier ones.
+  std::vector<std::string> configs;
+  YAML::Node values{YAML::NodeType::Map};  ///< single values: block -> key -> value
 
   /// @param key  "block/key"
   template <class Value>
@@ -26,37 +28,40 @@ struct Arguments {
   }
 };
 
-/// Blocks by name.
+/// A configuration after all layers have been merged.
 struct ResolvedConfiguration {
-  YAML::Node blocks{YAML::NodeType::Map};
-  std::string sources;  ///< the files, for messages
+  YAML::Node blocks{YAML::NodeType::Map};  ///< blocks by name
+  std::string sources;                     ///< list of the merged files, for error messages
 
   ParamReader reader() const { return ParamReader(blocks, sources); }
 };
 
-/// The one place where a configuration is put together. Later layers win, key by key:
+/// Merges all layers of a configuration. All programs call this function. Later layers override
+/// earlier ones, key by key:
 ///
 ///   defaults, preset, plant, method, configs, values
 ///
-/// The defaults are those of the parameter references, then those of a launch file.
+/// The defaults are the parameter references, followed by the defaults of a launch file.
 ///
-/// A saved configuration among the configs (--repeat RUN) takes the place of preset, plant and
-/// method. Otherwise preset, plant and method are those that `experiment` names in values, else in
-/// the last of the configs that names them, else in the defaults.
+/// If one of the configs is the saved configuration of an experiment (--repeat RUN), it replaces
+/// the layers preset, plant and method. Otherwise the block `experiment` names preset, plant and
+/// method. The values are searched first, then the configs from last to first, then the defaults.
 ///
-/// Where nothing above the defaults gives them, model/max_torque and mpc/max_torque are max_torque
-/// of the robot, without a robot of the plant, which a model file may hold; controller/torque_dim is
-/// the number of motors in that list; and in real time mpc/time_budget is half a time step.
+/// Three values are derived if no layer above the defaults gives them:
+///  * model/max_torque and mpc/max_torque are robot/max_torque. Without a robot they are the
+///    max_torque of the plant, which may come from its model file;
+///  * controller/torque_dim is the number of motors of robot or plant;
+///  * mpc/time_budget is half a time step if the plant runs in real time.
 /// @throws std::invalid_argument if there is no such preset, plant or named configuration (the
 ///         message lists those that exist), if a saved configuration has another preset, plant or
 ///         method, or if controller/torque_dim is not the number of motors
-/// @throws std::runtime_error or std::invalid_argument as readBlocks(), for a file
+/// @throws std::runtime_error or std::invalid_argument if a file cannot be read, see readBlocks()
 ResolvedConfiguration resolve(const Arguments& arguments);
 
 /// The names in a group of named configurations; empty if there is no such group.
 std::vector<std::string> namesInGroup(const std::string& group);
 
-/// A command line option whose value overrides `key` ("block/key"). It has no default: the
+/// A command line option that sets `key` ("block/key"). The option has no default, because the
 /// configuration files hold the defaults.
 template <class Value>
 boost::program_options::typed_value<Value>* given(const std::string& key, Arguments* arguments) {
@@ -69,7 +74,7 @@ boost::program_options::typed_value<Value>* given(const std::string& key, Argume
 boost::program_options::options_description configurationOptions(const std::string& about,
                                                                  Arguments* arguments);
 
-/// The same, --seed and --out.
+/// The options of configurationOptions(), --seed and --out.
 boost::program_options::options_description commonOptions(const std::string& about,
                                                           Arguments* arguments);
 

@@ -1,4 +1,4 @@
-// The folder of one experiment: everything that it leaves behind, and what resuming needs.
+// The folder of one experiment, which holds its results and everything needed to resume it.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "run_folder.h"
 
@@ -34,19 +34,20 @@ constexpr char kTraining[] = "training.yaml";
 constexpr char kSummary[] = "summary.yaml";
 constexpr char kConfiguration[] = "config.yaml";
 
-/// In these, two runs of one experiment may differ.
+/// Keys that may differ between two calls on the same experiment.
 const Keys kMayDiffer = {"experiment/trials", "experiment/runs", "experiment/timeout",
                          "sim/watchdog", "evaluation/record"};
 
-/// These a user chooses by looking at the robot, which takes more than one launch. They may change
-/// until the first trial is finished.
+/// Keys that a user tunes on the robot over several launches. They may change until the first trial
+/// is finished.
 const Keys kChosenOnTheRobot = {"robot/crop", "robot/goal_file", "evaluation/goal_distance"};
 
-/// The differences with which an experiment must not go on, a line each; empty: none.
-/// @param there  blocks by name; anything that is not a block is left out
-/// @param here   likewise
+/// Lists the differences because of which an experiment cannot be resumed, one per line; empty if
+/// there are none. Top-level entries that are not blocks are ignored.
+/// @param there  blocks in the folder, by name
+/// @param here   blocks of this call, by name
 std::string differencesOf(const YAML::Node& there, const YAML::Node& here, bool trial_finished) {
-  std::map<std::string, std::pair<std::string, std::string>> values;  // as YAML, by "block/key"
+  std::map<std::string, std::pair<std::string, std::string>> values;  // YAML texts by "block/key"
   const auto take = [&values](const YAML::Node& blocks, auto side) {
     for (const auto& block : blocks) {
       if (!block.second.IsMap()) continue;
@@ -63,7 +64,7 @@ std::string differencesOf(const YAML::Node& there, const YAML::Node& here, bool 
   std::string differences;
   for (const auto& [key, value] : values) {
     if (kMayDiffer.count(key) > 0 || value.first == value.second) continue;
-    // A plant's file may have moved, or its path be relative: what is in it is compared.
+    // The file of a plant may have moved. The contents of both files are compared as block `plant`.
     const bool of_files = namesPlantFile(value.first) && namesPlantFile(value.second);
     if (key == "experiment/plant" && of_files) continue;
     const bool chosen = robot && kChosenOnTheRobot.count(key) > 0;
@@ -78,8 +79,8 @@ std::string differencesOf(const YAML::Node& there, const YAML::Node& here, bool 
   return differences;
 }
 
-/// Gives a file of an earlier try another name: "trial.bag" is "trial.1.bag" then, or
-/// "trial.2.bag".
+/// Renames a file of an earlier attempt: "trial.bag" becomes "trial.1.bag", or "trial.2.bag" if
+/// that name is taken.
 /// @return the new name; empty if there is no such file
 std::string keep(const std::string& stem, const std::string& ending) {
   if (!fs::exists(fs::symlink_status(stem + ending))) return "";
@@ -95,7 +96,7 @@ std::string keep(const std::string& stem, const std::string& ending) {
 
 std::string codeVersion() {
 #if defined(__x86_64__) && !defined(__AVX2__)
-  return DDM_CODE_VERSION " without AVX2";  // it rounds differently
+  return DDM_CODE_VERSION " without AVX2";  // results differ by rounding
 #else
   return DDM_CODE_VERSION;
 #endif
@@ -112,7 +113,7 @@ RunFolder::RunFolder(const Configuration& configuration)
     : configuration_(configuration),
       path_(configuration.experiment.runs),
       blocks_(toYaml(configuration)) {
-  // The driver that draws the images, where their pixels depend on it.
+  // Name of the graphics driver, for plants whose images depend on the driver.
   const std::string renderer = configuration.robot ? "" : configuration.plant->renderer();
   if (!renderer.empty()) blocks_["renderer"] = renderer;
   if (path_.empty()) throw std::runtime_error("no folder was given for the results");
@@ -196,7 +197,8 @@ std::vector<std::string> RunFolder::bagsUpTo(int trial) const {
 bool RunFolder::isRecorded(const RunId& run) const {
   const std::string folder = at(runName(run));
   if (!recordings_fit_ || !fs::exists(folder + "/trial.bag")) return false;
-  // Written after the bag. Lock-step gives the same torques again; in real time the bag has to do.
+  // torques.csv is written after the bag. A lock-step trial without it is repeated with the same
+  // torques. A trial in real time cannot be repeated exactly, and its bag suffices.
   const bool repeatable = configuration_.sim.lockstep && !configuration_.robot;
   return !repeatable || fs::exists(folder + "/torques.csv");
 }
@@ -245,14 +247,14 @@ void RunFolder::writeRun(const RunId& run, const TrialOutcome& outcome) {
   if (!outcome.states.empty()) {
     write(folder + "/trajectory.csv", formatTrajectoryCsv(outcome.times, outcome.states,
                                                           configuration_.plant_info.state_names));
-  } else if (!outcome.goal_distances.empty()) {  // what a run without ground truth is judged by
+  } else if (!outcome.goal_distances.empty()) {  // the evaluation is judged by these distances
     std::string text = csvLine("step", "goal_distance");
     for (size_t step = 0; step < outcome.goal_distances.size(); ++step) {
       text += csvLine(step, outcome.goal_distances[step]);
     }
     write(folder + "/goal_distance.csv", text);
   }
-  // Last: see isRecorded().
+  // This file marks the recording as complete, see isRecorded().
   write(folder + "/torques.csv",
         formatTorquesCsv({outcome.torques, outcome.exploratory}, torqueNames(configuration_)));
 }
@@ -280,14 +282,14 @@ std::optional<TrainingOutcome> RunFolder::savedTraining(int trial) const {
     outcome.seconds = training["train_s"].as<double>();
     outcome.evaluations = training["train_evaluations"].as<std::uint32_t>();
     return outcome;
-  } catch (const std::exception&) {  // damaged: a training on the bags gives it again
+  } catch (const std::exception&) {  // a damaged file is replaced by another training on the bags
     return std::nullopt;
   }
 }
 
 void RunFolder::finishTrial(const TrialRow& row) {
   rows_.push_back(row);
-  write(kChecksums, formatTrialsChecksums(rows_));  // first, see formatTrialsChecksums()
+  write(kChecksums, formatTrialsChecksums(rows_));  // before the table, see formatTrialsChecksums()
   write(kRows, formatTrialsCsv(rows_));
 }
 

@@ -1,4 +1,4 @@
-// What an experiment begins with: a saved model, bags, and what an earlier call has left.
+// Prepares the model and the data that an experiment, or a resumed experiment, starts from.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "start.h"
 
@@ -19,12 +19,15 @@
 namespace ddm {
 namespace {
 
-constexpr double kRateTolerance = 0.1;  // of dt
+constexpr double kRateTolerance = 0.1;  // largest deviation of the time step [fraction of dt]
 
-/// Makes a path absolute and fills its checksum in, or compares it with the one that is there.
+/// Makes a path absolute. Fills in a missing checksum of the file or compares it with the given
+/// one.
+/// @throws std::invalid_argument if the checksum differs
 void identify(std::string* path, std::string* checksum) {
   *path = boost::filesystem::absolute(*path).lexically_normal().string();
-  const std::string here = "crc32-" + ddm::checksum(readFile(*path));  // no number for YAML
+  // The prefix keeps YAML readers from parsing the checksum as a number.
+  const std::string here = "crc32-" + ddm::checksum(readFile(*path));
   if (!checksum->empty() && *checksum != here) {
     throw std::invalid_argument(*path + " has changed: its checksum was " + *checksum + ", it is " +
                                 here + " now; put it back, or start another experiment");
@@ -32,7 +35,9 @@ void identify(std::string* path, std::string* checksum) {
   *checksum = here;
 }
 
-/// A bag must have been recorded on such a plant or robot, whose images come at the model's size.
+/// Checks that a bag was recorded with this plant or robot: number of torques, camera and time
+/// step.
+/// @throws std::invalid_argument naming the first difference
 void requireFits(const std::string& path, const Configuration& configuration, const Plant& plant,
                  DifferentBags* different) {
   const bool robot = configuration.robot.has_value();
@@ -68,8 +73,8 @@ std::string firstTrial(const StartOptions& start) {
          (start.model.empty() ? "the model trained on them" : "model " + start.model);
 }
 
-/// The number of episodes of this trial that an earlier call has recorded completely.
-/// @throws std::runtime_error if a bag of this trial or of one before it cannot be read
+/// Number of episodes of this trial that an earlier call has recorded completely.
+/// @throws std::runtime_error if a bag of this trial or of an earlier trial cannot be read
 int requireReadableBags(int trial, const Configuration& configuration, const RunFolder& folder) {
   const ModelConfig& learner = configuration.model;
   BagCache cache(learner.image.size, learner.data_set);
@@ -165,7 +170,7 @@ void announce(const Configuration& configuration, const RunFolder& folder, Progr
 void resumeTrial(int trial, const Configuration& configuration, Driver* driver,
                  const RunFolder& folder, Progress* progress) {
   const int num_recorded = requireReadableBags(trial, configuration, folder);
-  if (num_recorded == configuration.trial.episodes) return;  // nothing is left to explore
+  if (num_recorded == configuration.trial.episodes) return;  // no exploration is left to do
   const StartOptions& start = configuration.start;
   if (trial == 0 && !start.model.empty()) {
     if (driver->useModel(start.model)) return;

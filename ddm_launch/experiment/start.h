@@ -1,4 +1,4 @@
-// What an experiment begins with: a saved model, bags, and what an earlier call has left.
+// Prepares the model and the data that an experiment, or a resumed experiment, starts from.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -14,28 +14,29 @@
 
 namespace ddm {
 
-/// @throws std::runtime_error with the path and the fault
+/// @throws std::runtime_error with path and reason if the file is not a valid model
 std::shared_ptr<const Ddm> readModel(const std::string& path);
 
-/// @param source  file of the model, for messages
+/// Checks that a saved model fits the configuration.
+/// @param source  path of the model, for error messages
 /// @throws std::invalid_argument if model, configuration and plant or robot do not fit together
 void requireModelFits(const std::shared_ptr<const Ddm>& model, const std::string& source,
                       const Configuration& configuration);
 
-/// Completes the block `start` of a configuration: absolute paths, and checksums of the files, so
-/// that nobody resumes with other files. Nothing to do where the block is empty.
+/// Completes the block `start`: makes its paths absolute and adds the checksum of each file, so
+/// that an experiment cannot be resumed with other files. Does nothing if the block is empty.
 /// @throws std::runtime_error if a file cannot be read
-/// @throws std::invalid_argument if the method cannot start from the files, a checksum that is given
-///         already is not that of its file, or model or bags do not fit configuration and plant
+/// @throws std::invalid_argument if the method cannot start from files, if a given checksum differs
+///         from that of its file, or if model or bags do not fit configuration and plant
 void prepareStart(Configuration* configuration);
 
-/// Prints the preset, the plant and the number of trials, and how many trials an earlier call has finished.
+/// Prints preset, plant, seed and number of trials, and how many trials are finished already.
 void announce(const Configuration& configuration, const RunFolder& folder, Progress* progress);
 
-/// Gives the driver the model for a trial, which an earlier call may have begun: that of the
-/// training before the trial, and for trial 0 that of `start`, if there is one.
-/// @throws std::runtime_error before anything moves, if a bag that the training after the trial will
-///         read is damaged
+/// Gives the driver the model to explore with in a trial, which an earlier call may have begun. The
+/// model is that of the previous training; for trial 0 it is that of `start`, if there is one.
+/// @throws std::runtime_error before anything moves, if one of the bags for the next training is
+///         damaged
 void resumeTrial(int trial, const Configuration& configuration, Driver* driver,
                  const RunFolder& folder, Progress* progress);
 

@@ -1,4 +1,4 @@
-// Tables of an experiment: the text of CSV files, and the files that are read back.
+// Writes and reads the CSV files of an experiment.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tables.h"
 
@@ -30,10 +30,11 @@ void requireFinite(double value) {
 }
 
 /// Calls `take` with the cells of each line after the header.
-/// @param header  as csvLine() writes it
-/// @param source  file, for messages
-/// @throws std::runtime_error with source, line and fault, also for what `take` throws: another
-///         header, another number of cells than in the header, a last line without its end
+/// @param header  expected first line, in the format of csvLine()
+/// @param source  path of the file, for error messages
+/// @throws std::runtime_error with source, line and reason if the header differs, if a row has
+///         another number of cells than the header, if the last line has no line end, or if `take`
+///         throws
 void parseCsv(const std::string& text, const std::string& header, const std::string& source,
               const std::function<void(const Cells& cells)>& take) {
   std::istringstream in(text);
@@ -77,13 +78,13 @@ bool flag(const std::string& cell) {
   return cell == "1";
 }
 
-/// lexical_cast alone would make a huge number of "-1".
+/// lexical_cast alone would convert "-1" to a very large number.
 std::uint32_t count(const std::string& cell) {
   if (cell.empty() || cell[0] == '-') throw std::runtime_error("'" + cell + "' must be >= 0");
   return boost::lexical_cast<std::uint32_t>(cell);
 }
 
-/// A time, which is written with three decimals.
+/// A time of at least 0 and at most 1e12, in seconds or milliseconds.
 double duration(const std::string& cell) {
   const double value = finiteNumber(cell);
   if (value < 0.0 || value > 1e12) throw std::runtime_error("'" + cell + "' is not a duration");
@@ -95,7 +96,7 @@ void requireStep(const std::string& cell, std::size_t step) {
   throw std::runtime_error("must be step " + std::to_string(step) + ", got " + cell);
 }
 
-/// The numbers in some cells of a row.
+/// The numbers in cells begin ... begin + size - 1 of a row.
 Eigen::VectorXd numbersOf(const Cells& cells, std::size_t begin, std::size_t size) {
   Eigen::VectorXd numbers(static_cast<Eigen::Index>(size));
   for (std::size_t i = 0; i < size; ++i) {

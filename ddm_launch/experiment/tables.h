@@ -1,4 +1,4 @@
-// Tables of an experiment: the text of CSV files, and the files that are read back.
+// Writes and reads the CSV files of an experiment.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -13,9 +13,10 @@
 
 namespace ddm {
 
-/// The text of a cell. Numbers have all digits, an empty optional is an empty cell, and each entry of
-/// a list is a cell.
-/// @throws std::range_error if a number is not finite, because the readers below would refuse it
+/// The text of a CSV cell. A number has enough digits to restore it exactly, an empty optional is
+/// an empty cell, and a list becomes one cell per entry.
+/// @throws std::range_error if a number is not finite, because the parsers below reject such
+///         numbers
 inline std::string csvCell(const std::string& text) { return text; }
 std::string csvCell(double value);
 std::string csvCell(const std::optional<double>& value);
@@ -26,7 +27,7 @@ std::enable_if_t<std::is_integral<Integer>::value, std::string> csvCell(Integer 
   return std::to_string(value);
 }
 
-/// "CELL,CELL,...\n", a header or a row.
+/// One line of a CSV file, "CELL,CELL,...\n": a header or a row.
 template <class... Cells>
 std::string csvLine(const Cells&... cells) {
   std::string line;
@@ -35,45 +36,47 @@ std::string csvLine(const Cells&... cells) {
   return line;
 }
 
-/// z_1, z_2, ... of a feature, or NAME_1, NAME_2, ...
+/// Column names of a feature: z_1, z_2, ... or NAME_1, NAME_2, ...
 std::vector<std::string> featureNames(int feature_dim, const std::string& name = "z");
 
-/// torques.csv: the torques of a run, and which of them were exploratory.
+/// Content of torques.csv: N torques of an episode.
 struct TorqueRows {
-  std::vector<Eigen::VectorXd> torques;
-  std::vector<bool> exploratory;  ///< as many
+  std::vector<Eigen::VectorXd> torques;  ///< N vectors [N m]
+  std::vector<bool> exploratory;         ///< N flags, true for a random torque
 };
 
-/// Header and one row per step.
-/// @param names  of the torques
-/// @throws std::invalid_argument if a row has another number of torques
+/// The text of torques.csv: a header and one row per step.
+/// @param names  names of the torques, with units
+/// @throws std::invalid_argument if a row does not have one torque per name
 std::string formatTorquesCsv(const TorqueRows& rows, const std::vector<std::string>& names);
 
-/// trajectory.csv: header and the true state at each image.
-/// @param times   since the first image [s]
-/// @param states  as many
-/// @param names   of the components of a state, with units
+/// The text of trajectory.csv: a header and the true state at each of N images.
+/// @param times   N times since the first image [s]
+/// @param states  N states
+/// @param names   names of the components of a state, with units
 std::string formatTrajectoryCsv(const std::vector<double>& times,
                                 const std::vector<Eigen::VectorXd>& states,
                                 const std::vector<std::string>& names);
 
-/// trials.csv: header and one row per finished trial. success, success_strict and final_error are
-/// empty where they are not known, v_r and v_p where the method has no such errors, return where the
-/// plant has no reward. final_error is in the unit goal/error_unit of config.yaml.
+/// The text of trials.csv: a header and one row per finished trial. The columns success,
+/// success_strict and final_error are empty if the result is unknown, v_r and v_p if the method has
+/// no such errors, and return if the plant has no reward. The unit of final_error is
+/// goal/error_unit in config.yaml.
 std::string formatTrialsCsv(const std::vector<TrialRow>& rows);
 
-/// The inverse functions, digit by digit. States are the columns of a matrix [names.size() x images].
-/// @param source  file, for messages
-/// @throws std::runtime_error with source, line and fault
+/// Inverse functions of the three functions above. The states are the columns of a matrix
+/// [names.size() x N].
+/// @param source  path of the file, for error messages
+/// @throws std::runtime_error with source, line and reason
 TorqueRows parseTorquesCsv(const std::string& text, const std::vector<std::string>& names,
                            const std::string& source);
 Eigen::MatrixXd parseTrajectoryCsv(const std::string& text, const std::vector<std::string>& names,
                                    const std::string& source);
 std::vector<TrialRow> parseTrialsCsv(const std::string& text, const std::string& source);
 
-/// Line k of .trials.crc32 is the CRC-32 of trials.csv as it was with k rows, k = 1, 2, ...
-/// Therefore the checksums may be written before the table: if the program ends between, the table
-/// still has its line.
+/// The text of .trials.crc32: line k is the CRC-32 of trials.csv with its first k rows, k = 1, 2,
+/// ... The checksums can therefore be written before the table: if the program is killed in
+/// between, the shorter table still matches one of the lines.
 std::string formatTrialsChecksums(const std::vector<TrialRow>& rows);
 
 }  // namespace ddm

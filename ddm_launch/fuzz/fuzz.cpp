@@ -1,4 +1,4 @@
-// Fuzz targets of ddm_launch: configurations, and the tables of a run folder.
+// Fuzz targets of ddm_launch: configurations and the CSV tables of a run folder.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_msgs/testing/fuzzing.h>
 
@@ -17,9 +17,9 @@ ddm::Configuration read(const ddm::testing::MemoryFile& file) {
   return ddm::readConfiguration(&reader);
 }
 
-/// The configuration of an experiment, all its blocks.
+/// Fuzzes all blocks of the configuration of an experiment.
 void configuration(const std::uint8_t* data, std::size_t size) {
-  // A slash in plant/type would look for plugins in all of the workspace.
+  // A slash in plant/type would make the program search the whole workspace for plugins.
   if (std::find(data, data + size, '/') != data + size) return;
   static const ddm::testing::MemoryFile file;
   file.write(data, size);
@@ -30,8 +30,8 @@ void configuration(const std::uint8_t* data, std::size_t size) {
   require(YAML::Dump(ddm::toYaml(read(file))) == written, "a saved configuration comes back");
 }
 
-/// A table is refused, or it holds finite numbers, which are written and read again digit by digit:
-/// the functions that write refuse all others.
+/// Checks that a table is refused or survives writing and reading unchanged. The functions that
+/// write tables refuse numbers that are not finite.
 template <class Parse, class Format>
 void checkTable(const std::string& text, const Parse& parse, const Format& format) {
   std::optional<decltype(parse(text))> read;
@@ -40,7 +40,7 @@ void checkTable(const std::string& text, const Parse& parse, const Format& forma
   require(format(parse(written)) == written, "what is written is read");
 }
 
-/// torques.csv and trajectory.csv.
+/// Fuzzes torques.csv and trajectory.csv.
 void runCsv(const std::uint8_t* data, std::size_t size) {
   const std::string text(reinterpret_cast<const char*>(data), size);
   static const std::vector<std::string> torques = {"dx_px", "dy_px"}, states = {"x_px", "y_px"};
@@ -60,7 +60,7 @@ void runCsv(const std::uint8_t* data, std::size_t size) {
       });
 }
 
-/// trials.csv of a run folder.
+/// Fuzzes trials.csv.
 void trialsCsv(const std::uint8_t* data, std::size_t size) {
   checkTable(
       std::string(reinterpret_cast<const char*>(data), size),

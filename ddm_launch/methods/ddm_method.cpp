@@ -1,4 +1,4 @@
-// The paper's method: deep dynamical model and MPC in its feature space.
+// The paper's method: a deep dynamical model and MPC in its feature space.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_bag_io/bag_cache.h>
 #include <ddm_model/model_file.h>
@@ -13,7 +13,7 @@
 namespace ddm {
 namespace {
 
-/// Does what model_node and mpc_node do.
+/// Trains and plans with the same code as model_node and mpc_node.
 class DdmMethod : public Method {
  public:
   explicit DdmMethod(const Configuration& configuration)
@@ -22,7 +22,7 @@ class DdmMethod : public Method {
     requireLearnedPrediction(configuration.model.training);
   }
 
-  /// @throws std::runtime_error if a bag cannot be read or the training comes to nothing
+  /// @throws std::runtime_error if a bag cannot be read or the training fails
   TrainingOutcome train(const std::vector<std::string>& bags, const TrialId& id,
                         const PhaseCallback& progress) override;
 

@@ -1,4 +1,4 @@
-// A method: what learns from trials and acts in the next one.
+// Interface of a method, which learns from trials and acts in the next one.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "method.h"
 
@@ -34,7 +34,7 @@ MethodKind methodKind(const std::string& name) {
 }
 
 Configuration readWithMethod(ParamReader* reader) {
-  ParamReader ahead = *reader;  // a copy: its problems are reported with all others
+  ParamReader ahead = *reader;  // a copy, so that problems of this block are not reported twice
   const std::string name = ahead.read<ExperimentOptions>("experiment").method;
   const YAML::Node blocks = methodKind(name).readBlocks(reader);
   Configuration configuration = readConfiguration(reader);

@@ -1,4 +1,4 @@
-// A method: what learns from trials and acts in the next one.
+// Interface of a method, which learns from trials and acts in the next one.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -17,40 +17,40 @@
 
 namespace ddm {
 
-/// The seam between Algorithm 1 and who learns in it: the deep dynamical model, or a baseline.
+/// Interface between Algorithm 1 and a learner: the deep dynamical model or a baseline.
 class Method : public Learner {
  public:
-  /// The policy of the last training; null before the first.
+  /// The policy of the latest training; null before the first training.
   virtual std::shared_ptr<Policy> policy() const = 0;
 };
 
-/// A value that `experiment/method` may have.
+/// One of the values of `experiment/method`.
 struct MethodKind {
   std::string name;
-  std::string about;  ///< a few words, for --help
-  /// Effective values of the blocks that it alone reads, by name of the block; what is wrong with
-  /// them is kept in the reader.
+  std::string about;  ///< short description for --help
+  /// Reads the blocks that only this method has and returns their effective values by block name.
+  /// The reader collects all problems.
   std::function<YAML::Node(ParamReader*)> readBlocks;
-  /// The configuration and the plant that is controlled outlive the method. A baseline may look at
-  /// the plant's true state, nobody else does.
-  /// @throws std::invalid_argument if the method does not fit them
+  /// Makes the method. Configuration and plant must outlive it. Only a baseline may look at the
+  /// true state of the plant.
+  /// @throws std::invalid_argument if the method does not fit configuration and plant
   std::function<std::unique_ptr<Method>(const Configuration&, const Plant&)> make;
 };
 
-/// All that are built, the paper's own first.
+/// All methods of this build. The first is the paper's.
 std::vector<MethodKind> methodKinds();
 
 std::unique_ptr<Method> makeDdmMethod(const Configuration& configuration, const Plant& plant);
 std::unique_ptr<Method> makeOracleMethod(const Configuration& configuration, const Plant& plant);
 
-/// pilco_state, pilco_features, pilco_pca. None where DDM_PILCO is off.
+/// pilco_state, pilco_features and pilco_pca. Empty if the CMake option DDM_PILCO is off.
 std::vector<MethodKind> pilcoMethods();
 
-/// @throws std::invalid_argument naming what there is, if there is no such method
+/// @throws std::invalid_argument listing all methods, if none has this name
 MethodKind methodKind(const std::string& name);
 
-/// Reads all blocks, those of the method too.
-/// @throws std::invalid_argument with all problems
+/// Reads all blocks, including those of the method.
+/// @throws std::invalid_argument listing all problems
 Configuration readWithMethod(ParamReader* reader);
 
 }  // namespace ddm

@@ -1,4 +1,4 @@
-// Oracle: the paper's classical MPC, on the true plant and its true state.
+// Oracle: the paper's MPC with the true plant as model and with its true state.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "oracle_method.h"
 
@@ -13,9 +13,9 @@
 namespace ddm {
 namespace {
 
-constexpr double kStep = 1e-5;  // of the central differences, in the units of state and torque
+constexpr double kStep = 1e-5;  // step of central differences, in the units of state and torque
 
-/// Jacobian by central differences.
+/// Jacobian df/dx by central differences.
 /// @param f  function of a vector
 /// @return   df/dx  [f's size x x's size]
 template <class Function>
@@ -33,7 +33,7 @@ Eigen::MatrixXd jacobian(const Function& f, const Eigen::VectorXd& x) {
   return out;
 }
 
-/// Looks at the true state instead of the image.
+/// Plans from the true state of the plant; ignores the image.
 class OraclePolicy : public Policy {
  public:
   OraclePolicy(const Configuration& configuration, const Plant& plant)
@@ -58,7 +58,8 @@ class OraclePolicy : public Policy {
   std::mt19937_64 rng_;
 };
 
-/// Plans with the planner of the DDM; learns nothing, so that its rows in trials.csv have 0 frames.
+/// Plans with the planner of the DDM. The oracle learns nothing, so that the column frames of its
+/// trials.csv is 0.
 class OracleMethod : public Method {
  public:
   OracleMethod(const Configuration& configuration, const Plant& plant)

@@ -1,4 +1,4 @@
-// Oracle: the paper's classical MPC, on the true plant and its true state.
+// Oracle: the paper's MPC with the true plant as model and with its true state.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -9,22 +9,23 @@
 
 namespace ddm {
 
-/// Cost of torques from a state of the plant on, with the plant itself as the model:
+/// Cost of a plan U from a given state of the plant, with the plant itself as the model:
 ///
 ///   J(U) = sum_{k=1}^{K} |p_k - p_goal|^2 + lambda |u_{k-1}|^2
 ///   state_{k+1} = plant(state_k, u_k)
 ///
-/// p is where the moving part is in the picture, Plant::visiblePosition(): for the pendulum a
-/// circle, as its features are after training, so that the planner meets the same problem with a
-/// perfect model. The gradient goes backwards through the steps, each with central differences.
+/// p is the position of the moving part in the image, Plant::visiblePosition(). For the pendulum, p
+/// lies on a circle, as the features do after training. The planner therefore solves the same
+/// problem as with the DDM, but with a perfect model. The gradient is computed backwards through
+/// the steps; the Jacobian of each step is computed by central differences.
 class OraclePlanCost : public PlanCost {
  public:
   OraclePlanCost(std::unique_ptr<Plant> plant, int horizon, double control_weight);
 
-  /// The state to reach.
+  /// Sets the goal state.
   void setGoal(const Eigen::VectorXd& state) { goal_ = plant_->visiblePosition(state); }
 
-  /// The state to plan from.
+  /// Sets the state that the plan begins in.
   void setState(const Eigen::VectorXd& state) { state_ = state; }
 
   double evaluate(const Eigen::Ref<const Eigen::MatrixXd>& U, Eigen::MatrixXd* d_U) override;
@@ -37,7 +38,7 @@ class OraclePlanCost : public PlanCost {
   Eigen::VectorXd next(const Eigen::VectorXd& state, const Eigen::VectorXd& u) const;
   void backward(const Eigen::Ref<const Eigen::MatrixXd>& U, Eigen::MatrixXd* d_U) const;
 
-  std::unique_ptr<Plant> plant_;  // imagined: never the one that is controlled
+  std::unique_ptr<Plant> plant_;  // a copy for predictions, not the controlled plant
   int horizon_;
   double control_weight_;
   Eigen::VectorXd goal_;

@@ -1,4 +1,4 @@
-// No baselines: what a build without PILCO links.
+// Defines pilcoMethods() for builds without PILCO.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "method.h"
 

@@ -1,4 +1,4 @@
-// evaluate: how good is a saved model? Greedy runs on a plant, one for each seed, without a master.
+// evaluate: runs greedy evaluations of a saved model on a plant, one per seed, without a master.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_common/param_value.h>
 #include <ddm_common/plain_file.h>
@@ -38,13 +38,13 @@ constexpr char kAbout[] =
 
 struct Request {
   std::string model;
-  std::string out;  ///< folder
-  int first_seed = 0;
-  int end_seed = 0;  ///< excluded
+  std::string out;     ///< output folder
+  int first_seed = 0;  ///< first seed
+  int end_seed = 0;    ///< last seed + 1
   int jobs = 1;
 };
 
-/// "A:B", B excluded, as the seeds of a sweep.
+/// Parses "A:B", the seeds A ... B - 1, as for a sweep.
 void parseSeeds(const std::string& text, Request* request) {
   char rest = 0;
   const int num_read =
@@ -54,7 +54,7 @@ void parseSeeds(const std::string& text, Request* request) {
   }
 }
 
-/// @return false where --help was asked for and has been printed
+/// @return false if --help was given and has been printed
 bool configure(int argc, char** argv, Request* request, ddm::Configuration* configuration) {
   ddm::Arguments arguments;
   std::string seeds;
@@ -71,13 +71,16 @@ bool configure(int argc, char** argv, Request* request, ddm::Configuration* conf
   if (request->jobs < 1) {
     throw po::error("--jobs must be >= 1, got " + std::to_string(request->jobs));
   }
-  arguments.set("experiment/method", std::string("ddm"));  // who acts by such a model
+  // Only the method `ddm` acts with such a model.
+  arguments.set("experiment/method", std::string("ddm"));
   ddm::ParamReader reader = ddm::resolve(arguments).reader();
   *configuration = ddm::readWithMethod(&reader);
   return true;
 }
 
-/// @param making  held while plants are made: nobody promised that several can be made at once
+/// Runs the evaluation of one seed.
+/// @param making  mutex held while a plant is made, because plugins need not support making several
+///                plants at once
 ddm::TrialRow evaluateSeed(ddm::Configuration configuration, const std::string& model, int seed,
                            int trial, std::mutex* making) {
   configuration.experiment.seed = seed;
@@ -91,7 +94,7 @@ ddm::TrialRow evaluateSeed(ddm::Configuration configuration, const std::string& 
   return ddm::rowOf(request.id, outcome, configuration.evaluation, plant.get());
 }
 
-/// All seeds, several at a time. The first error ends it.
+/// Evaluates all seeds with several threads. Stops at the first error.
 std::vector<ddm::TrialRow> evaluateAll(const ddm::Configuration& configuration,
                                        const Request& request, int trial) {
   std::vector<ddm::TrialRow> rows(static_cast<size_t>(request.end_seed - request.first_seed));
@@ -114,7 +117,7 @@ std::vector<ddm::TrialRow> evaluateAll(const ddm::Configuration& configuration,
   return rows;
 }
 
-/// Enough digits for a rate or a time.
+/// Rounds to four decimals, which suffice for a rate or a time.
 double rounded(double value) { return std::round(1e4 * value) / 1e4; }
 
 std::string csvOf(const std::vector<ddm::TrialRow>& rows) {
@@ -127,8 +130,8 @@ std::string csvOf(const std::vector<ddm::TrialRow>& rows) {
   return text;
 }
 
-/// Counts, rates with their intervals, and medians, as a YAML map. Texts are in quotes: to readers of
-/// YAML 1.1 such as PyYAML, 20:40 is a number, and so is an id of digits.
+/// Counts, rates with their intervals, and medians, as a YAML map. Texts are quoted, because YAML
+/// 1.1 readers such as PyYAML would parse 20:40 and an id of digits as numbers.
 std::string summaryOf(const std::vector<ddm::TrialRow>& rows, const Request& request,
                       const ddm::Configuration& configuration) {
   YAML::Emitter out;
@@ -170,7 +173,7 @@ std::string summaryOf(const std::vector<ddm::TrialRow>& rows, const Request& req
 
 void run(const Request& request, ddm::Configuration configuration) {
   const std::shared_ptr<const ddm::Ddm> model = ddm::readModel(request.model);
-  // The model file says what the model is; the configuration says how it is used.
+  // The model file defines the model. The configuration defines the controller and the plant.
   configuration.model.image.size = model->imageSize();
   configuration.model.model = model->options();
   std::cerr << "model " << request.model << " on " << configuration.experiment.plant
@@ -179,7 +182,7 @@ void run(const Request& request, ddm::Configuration configuration) {
   const std::vector<ddm::TrialRow> rows =
       evaluateAll(configuration, request, static_cast<int>(model->info().trial));
   const std::string summary = summaryOf(rows, request, configuration);
-  // create_directories() refuses a mere "."
+  // create_directories() fails for the path "."
   boost::filesystem::create_directories(boost::filesystem::absolute(request.out));
   ddm::writeFileAtomically(request.out + "/evaluation.csv", csvOf(rows));
   ddm::writeFileAtomically(request.out + "/evaluation.yaml", summary + "\n");

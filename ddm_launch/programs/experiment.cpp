@@ -1,4 +1,4 @@
-// Role `experiment` of experiment_node: Algorithm 1 with the real nodes.
+// Role `experiment` of experiment_node: runs Algorithm 1 with ROS nodes.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_common/run_node.h>
 #include <ddm_msgs/topics.h>
@@ -17,7 +17,7 @@
 namespace ddm {
 namespace {
 
-/// What learning_curve_node draws, for whoever looks and whoever comes.
+/// Publishes the rows of all trials on a latched topic, which learning_curve_node draws.
 void publishTrials(const ros::Publisher& publisher, const std::vector<TrialRow>& rows,
                    const Configuration& configuration) {
   YAML::Node trials;
@@ -30,7 +30,7 @@ void publishTrials(const ros::Publisher& publisher, const std::vector<TrialRow>&
   publisher.publish(message);
 }
 
-/// What belongs to ROS and outlives an error: to end it takes a master that answers.
+/// Objects that must outlive an error message, because their destructors wait for the ROS master.
 struct Node {
   ros::Publisher trials_pub;
   std::optional<RosDriver> driver;

@@ -1,4 +1,4 @@
-// experiment_node: what launch files need, in one program: `experiment_node ROLE ...`.
+// experiment_node: one program for all roles that launch files need: `experiment_node ROLE ...`.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_common/tool.h>
 
@@ -7,11 +7,11 @@
 
 namespace ddm {
 
-// One file for each role.
-int experimentNode(int argc, char** argv);        // Algorithm 1 with the real nodes
-int trialNode(int argc, char** argv);             // one trial with them
+// Each role is in a file of its own.
+int experimentNode(int argc, char** argv);        // Algorithm 1 with ROS nodes
+int trialNode(int argc, char** argv);             // one trial with ROS nodes
 int replayNode(int argc, char** argv);            // plays a bag to mpc_node
-int resolveConfiguration(int argc, char** argv);  // prints the configuration of a launch
+int resolveConfiguration(int argc, char** argv);  // prints the configuration for a launch file
 
 }  // namespace ddm
 

@@ -1,4 +1,4 @@
-// feature_space: what a run's model makes of its experience, and what it planned at one step.
+// feature_space: writes the features of all images of an experiment and the plan at one step.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_bag_io/bag_cache.h>
 #include <ddm_common/plain_file.h>
@@ -42,7 +42,7 @@ struct Arguments {
   std::string out;
 };
 
-/// @return false where --help was asked for and has been printed
+/// @return false if --help was given and has been printed
 bool parse(int argc, char** argv, Arguments* arguments) {
   po::options_description options(kAbout);
   options.add_options()("trial", po::value(&arguments->trial)->required(),
@@ -69,8 +69,9 @@ DataSet experience(const Arguments& arguments, const Configuration& all) {
   return BagCache(all.model.image.size, all.model.data_set).read(bags);
 }
 
-/// The plan at one step of the greedy evaluation, which is run again up to there.
-/// @throws std::runtime_error if there is no such step or plan, or the torques are not the recorded
+/// The plan at one step of the greedy evaluation. The evaluation is repeated up to this step.
+/// @throws std::runtime_error if there is no such step or plan, or if the repeated torques differ
+///         from the recorded ones
 Plan planAt(const Arguments& arguments, const Configuration& all,
             const std::shared_ptr<const Ddm>& model) {
   const std::string file =

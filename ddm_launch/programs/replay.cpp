@@ -1,4 +1,4 @@
-// Role `replay` of experiment_node: plays a bag to mpc_node and compares its torques with the recorded ones.
+// Role `replay` of experiment_node: plays a bag to mpc_node and compares torques with the recording.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <actionlib/client/simple_action_client.h>
 #include <ddm_bag_io/bag_reader.h>
@@ -29,15 +29,15 @@ namespace {
 
 constexpr char kRecorded[] = "replay/torque";
 constexpr char kProposed[] = "replay/proposed_torque";
-const ros::WallDuration kLook(0.02);  // how often conditions without a callback are checked
+const ros::WallDuration kLook(0.02);  // period for conditions without a callback [s]
 
 /// Block `replay`.
 struct ReplayOptions {
-  std::string bag;        ///< bag to play
-  std::string model;      ///< model file
-  std::string out;        ///< CSV file of both torques; empty: none
-  double rate = 1.0;      ///< speed in terms of that of the recording [-]; 0: as fast as plans come
-  double timeout = 10.0;  ///< wall time that an answer may take [s]
+  std::string bag;        ///< path of the bag to play
+  std::string model;      ///< path of the model
+  std::string out;        ///< CSV file for both torques; empty: none
+  double rate = 1.0;      ///< speed relative to the recording [-]; 0: as fast as plans are computed
+  double timeout = 10.0;  ///< longest wall time for an answer [s]
 
   template <class Visitor>
   void visit(Visitor& visitor) {
@@ -57,8 +57,8 @@ struct ReplayOptions {
   }
 };
 
-/// Gives mpc_node one image after the other and takes its answers. Moves no motor: it publishes
-/// below `replay/`, and mpc_node's own topics are remapped there.
+/// Sends one image after the other to mpc_node and receives its torques. No motor can move: this
+/// program publishes below `replay/`, and the topics of mpc_node are remapped to `replay/` too.
 class Replay {
  public:
   Replay(ros::NodeHandle nh, const ReplayOptions& options, const Ddm& model)
@@ -84,19 +84,19 @@ class Replay {
         "nothing takes " + topics[0] + " and answers on " + topics[1]);
   }
 
-  /// One stretch of frames without a gap: a trial of its own.
+  /// Starts a trial of mpc_node for one segment, i.e. samples without a gap.
   void beginSegment(Eigen::Index num_frames) {
     ddm_msgs::RunTrialGoal goal;
     goal.num_steps = static_cast<std::uint32_t>(num_frames);
     goal.hold_steps = 1;
-    goal.evaluation = 1;  // greedy
+    goal.evaluation = 1;  // no exploration
     goal.model_id = model_id_;
     goal.start = ros::Time::now();
     trial_client_.sendGoal(goal);
     trial_begun_ = true;
   }
 
-  /// @return the torque that mpc_node proposes for an image
+  /// @return the torque that mpc_node computes for an image [N m]
   Eigen::VectorXd propose(const Grey& grey, int size, const Eigen::VectorXd& recorded) {
     const ros::Time stamp = ros::Time::now();
     ddm_msgs::Torque torque;
@@ -110,10 +110,10 @@ class Replay {
                                              static_cast<Eigen::Index>(answer_->torque.size()));
   }
 
-  /// Waits for the end of a segment whose frames are all answered. Before mpc_node gives the trial up
-  /// over an image that it refuses, it answers the image with zero: only the end tells that zero
-  /// from a proposal.
-  /// @throws std::runtime_error unless mpc_node has completed the trial
+  /// Waits until mpc_node has completed a segment. If mpc_node refuses an image, it answers with
+  /// torque zero before it aborts the trial, so that only the result of the trial tells this zero
+  /// from a computed torque.
+  /// @throws std::runtime_error if mpc_node has not completed the trial
   void endSegment() {
     waitFor([this] { return trial_client_.getState().isDone(); },
             "mpc_node does not end its trial");
@@ -123,7 +123,7 @@ class Replay {
   }
 
  private:
-  /// @throws std::runtime_error after the timeout, if mpc_node gives the trial up, or on shutdown
+  /// @throws std::runtime_error on shutdown, after the timeout, or if mpc_node aborts the trial
   template <class Condition>
   void waitFor(const Condition& condition, const std::string& what) {
     const ros::SteadyTime begin = ros::SteadyTime::now();
@@ -154,7 +154,7 @@ double rms(const Eigen::MatrixXd& values) {
   return std::sqrt(values.squaredNorm() / static_cast<double>(values.size()));
 }
 
-/// Plays all frames.
+/// Plays all samples of a bag.
 /// @return proposed torques [N m]  [torque_dim x N]
 Eigen::MatrixXd play(const BagContent& bag, double rate, Replay* replay, Progress* progress) {
   const DataSet& data = bag.data;

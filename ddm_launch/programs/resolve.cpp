@@ -1,4 +1,4 @@
-// Role `resolve` of experiment_node: the configuration of a launch as one text.
+// Role `resolve` of experiment_node: prints the configuration for a launch file.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_common/config_blocks.h>
 #include <ddm_plant_plugin/plant_config.h>
@@ -39,7 +39,7 @@ struct Request {
   std::string path;
 };
 
-/// X,Y,WIDTH,HEIGHT of a robot's camera.
+/// Parses X,Y,WIDTH,HEIGHT, the crop of the robot's camera [pixels].
 void setCrop(const std::string& text, Arguments* arguments) {
   std::vector<int> crop(4);
   char rest = 0;
@@ -50,8 +50,8 @@ void setCrop(const std::string& text, Arguments* arguments) {
   arguments->set("robot/crop", crop);
 }
 
-/// The bags in the text of a launch argument: one, or several with blanks between them. A bag that
-/// does not exist and has a blank in its name stands in quotes.
+/// Splits the text of a launch argument into paths of bags, which are separated by blanks. Quotes are
+/// parsed only if the text as a whole is not a file and its words are not all files.
 std::vector<std::string> splitBags(const std::string& text) {
   const auto exists = [](const std::string& bag) { return fs::exists(expandHome(bag)); };
   if (exists(text)) return {text};
@@ -75,7 +75,7 @@ void setBags(const std::vector<std::string>& texts, Arguments* arguments) {
   arguments->set("start/bags", all);
 }
 
-/// The robot is this plant, simulated.
+/// Sets the motor limits of a simulated robot to those of the plant that simulates it.
 void setMotors(const std::string& plant, Arguments* arguments) {
   ParamReader reader = ParamReader::fromFiles({plantFile(plant)});
   const std::shared_ptr<const PlantPlugin> plugin = readPlant(&reader);
@@ -85,8 +85,8 @@ void setMotors(const std::string& plant, Arguments* arguments) {
                  std::vector<double>(limits.data(), limits.data() + limits.size()));
 }
 
-/// Command line without the options that have an empty value: launch files pass an argument that
-/// was not given like that.
+/// The command line without options that have an empty value, because launch files pass an empty
+/// value for each argument that the user did not give.
 std::vector<char*> givenWords(int argc, char** argv) {
   const auto isOption = [](const std::string& word) { return word.rfind("--", 0) == 0; };
   std::vector<char*> given = {argv[0]};
@@ -101,7 +101,7 @@ std::vector<char*> givenWords(int argc, char** argv) {
   return given;
 }
 
-/// @return false where --help was asked for and has been printed
+/// @return false if --help was given and has been printed
 bool configure(int argc, char** argv, Request* request) {
   using Text = std::string;
   using Texts = std::vector<std::string>;
@@ -129,15 +129,16 @@ bool configure(int argc, char** argv, Request* request) {
   return parseCommandLine(static_cast<int>(words.size()), words.data(), options);
 }
 
-/// Nodes run in another folder.
+/// Makes a path absolute, because nodes run in another folder.
 void makeAbsolute(YAML::Node path) {
   if (!path.IsDefined() || !path.IsScalar() || path.Scalar().empty()) return;
   path = fs::absolute(path.Scalar()).lexically_normal().string();
 }
 
-/// mpc_node ends a trial in which no image comes for controller/timeout, and a robot's images are
-/// robot/dt apart. Only nodes read that block, and no saved configuration has it: the check is here,
-/// not in requireConsistent(). mpc_node refuses a timeout that is not a number.
+/// Checks controller/timeout against the time step of a robot. mpc_node aborts a trial if no image
+/// comes within controller/timeout, and the images of a robot are robot/dt apart. The check is not
+/// in requireConsistent(), because only nodes read the block `controller` and no saved
+/// configuration has it. mpc_node itself refuses a timeout that is not a number.
 /// @throws std::invalid_argument if the timeout is shorter than two time steps
 void requirePatience(const RobotOptions& robot, const YAML::Node& blocks) {
   double timeout = 0.0;
@@ -168,7 +169,7 @@ void run(const Request& request) {
   makeAbsolute(blocks["experiment"]["runs"]);
   makeAbsolute(blocks["start"]["model"]);
   for (YAML::Node bag : blocks["start"]["bags"]) makeAbsolute(bag);
-  const YAML::Node plant = all.plant->block();  // has absolute paths
+  const YAML::Node plant = all.plant->block();  // its paths are absolute
   if (hasKey(blocks, "plant", "model") && plant["model"].IsDefined()) {
     blocks["plant"]["model"] = plant["model"];
   }
@@ -178,7 +179,7 @@ void run(const Request& request) {
     return;
   }
   if (request.print == "status_frequency") {
-    // In simulated time actionlib's usual 5 Hz are a message for each frame.
+    // In simulated time, actionlib's default of 5 Hz would mean a status message per time step.
     std::cout << (blocks["sim"]["lockstep"].as<bool>(true) ? "0.1" : "5.0") << "\n";
     return;
   }

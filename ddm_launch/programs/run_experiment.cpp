@@ -1,4 +1,4 @@
-// run_experiment: Algorithm 1 in one process, without a ROS master.
+// run_experiment: runs Algorithm 1 in one process, without a ROS master.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_model/minimise.h>
 #include <ros/time.h>
@@ -23,7 +23,7 @@ constexpr char kAbout[] =
     "                                        --trials 15 --out DIR [--model FILE] [--bags BAG...]\n"
     "       rosrun ddm_launch run_experiment --repeat RUN --out DIR  (the same again)";
 
-/// @return false where --help was asked for and has been printed
+/// @return false if --help was given and has been printed
 bool configure(int argc, char** argv, ddm::Configuration* configuration) {
   ddm::Arguments arguments;
   po::options_description options = ddm::commonOptions(kAbout, &arguments);
@@ -46,7 +46,8 @@ bool configure(int argc, char** argv, ddm::Configuration* configuration) {
 
 void run(ddm::Configuration configuration) {
   ddm::prepareStart(&configuration);
-  ddm::InProcessDriver driver(configuration);  // first: what it refuses must not leave a folder
+  // The driver is made before the folder, because a refused configuration must not leave a folder.
+  ddm::InProcessDriver driver(configuration);
   ddm::RunFolder folder(configuration);
   ddm::Progress progress(configuration.experiment.trials, configuration.plant_info.error_unit);
   ddm::runExperiment(configuration, &driver, &folder, &progress);

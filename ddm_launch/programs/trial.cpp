@@ -1,4 +1,4 @@
-// Role `trial` of experiment_node: one trial, random or with a saved model, recorded or not.
+// Role `trial` of experiment_node: runs one trial, random or with a saved model.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_common/option_checks.h>
 #include <ddm_common/run_node.h>
@@ -18,12 +18,12 @@ namespace {
 
 /// Block `run`.
 struct RunOptions {
-  std::string model;      ///< model file; empty: a random trial
-  std::string bag;        ///< bag to write; empty: nothing is recorded
-  double epsilon = 0.0;   ///< probability of a random torque; 1 where there is no model [-]
-  int num_steps = 100;    ///< frames [-]
+  std::string model;      ///< path of the model; empty: a random trial
+  std::string bag;        ///< path of the bag to write; empty: nothing is recorded
+  double epsilon = 0.0;   ///< probability of a random torque [-]; 1 if there is no model
+  int num_steps = 100;    ///< samples [-]
   int seed = 0;           ///< fixes every random draw
-  double timeout = 60.0;  ///< wall time without a sign of life [s]
+  double timeout = 60.0;  ///< longest wall time without any message or progress [s]
 
   template <class Visitor>
   void visit(Visitor& visitor) {
@@ -44,7 +44,7 @@ struct RunOptions {
   }
 };
 
-/// @param driver  outlives an error: to end it takes a master that answers
+/// @param driver  must outlive an error message, because its destructor waits for the ROS master
 void run(const ros::NodeHandle& nh, ParamReader* params, std::optional<RosDriver>* driver) {
   const auto options = params->read<RunOptions>("run");
   const auto plant = readPlant(params);

@@ -14,7 +14,7 @@ made. Needs root and debootstrap.
   TMPDIR          folder for the system, default /tmp; takes 10 GB
   DEBIAN_MIRROR   address of a Debian mirror, default that of this machine's apt"
 
-# The mirror that this machine's apt uses for Debian itself.
+# Prints the address of the mirror that this machine's apt uses for Debian's own packages.
 default_mirror() {
   apt-get indextargets --format '$(SITE)' 'Created-By: Packages' 'Origin: Debian' 'Label: Debian' 2>/dev/null | head -n 1
 }
@@ -24,10 +24,10 @@ make_root() {  # FOLDER
     tail -n 20 "$1.log" >&2
     fail "debootstrap failed, see above."
   }
-  printf '127.0.0.1 localhost\n127.0.1.1 %s\n' "$(uname -n)" >"$1/etc/hosts"  # as Debian's installer does
+  printf '127.0.0.1 localhost\n127.0.1.1 %s\n' "$(uname -n)" >"$1/etc/hosts"  # same content as from Debian's installer
 }
 
-# Mounts and processes end with the namespace in which this runs.
+# Runs in its own namespaces, so that mounts and processes end with them.
 run_script() {
   mount -t proc proc "$root/proc"
   mount -t sysfs sysfs "$root/sys"

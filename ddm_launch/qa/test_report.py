@@ -1,12 +1,12 @@
 #!/usr/bin/python3
-# Counts test cases from the result files of one or more catkin build folders; each case counts once.
+# Counts test cases in the result files of one or more catkin build folders; each case counts once.
 # SPDX-License-Identifier: BSD-3-Clause
 """usage: test_report.py BUILD_FOLDER [BUILD_FOLDER ...]
 
-Each folder holds test_results/PACKAGE/*.xml (JUnit) and what ctest -T Test leaves in Testing/; one with sanitizers also
-sanitizer_reports/, where each file is a failure. Prints the ten slowest tests, each failure and each skipped case, then
-"N passed, N failed"; returns 1 if any failed. A case that ran in several builds (same package, result file and name) counts
-once and must pass in all of them.
+Each folder contains test_results/PACKAGE/*.xml (JUnit) and the results of ctest -T Test in Testing/. A build with
+sanitizers also has sanitizer_reports/, where each file counts as a failure. Prints the ten slowest tests, each failure
+and each skipped case, then "N passed, N failed". Returns 1 if any case failed. A case that ran in several builds (same
+package, result file and name) counts once and must pass in all of them.
 """
 import collections
 import glob
@@ -15,12 +15,13 @@ import re
 import sys
 import xml.etree.ElementTree as ElementTree
 
-# rostest writes a case of this class for each program that it starts; the program's own cases are in a
-# second file. So the case says something new only if it failed.
+# rostest writes a case of this class for each program that it starts, and the program writes its own cases into a
+# second file. Hence the case of this class adds information only if it failed.
 ROSTEST_WRAPPER = "rostest.runner.RosTest"
 
-passed, skipped = set(), {}  # cases: (package, result file, name); skipped: case -> reason
-failures = collections.defaultdict(list)  # case -> messages
+# Cases are (package, result file, name). skipped: {case: reason}.
+passed, skipped = set(), {}
+failures = collections.defaultdict(list)  # {case: messages}
 times = []  # (seconds, test, build)
 
 
@@ -39,7 +40,8 @@ def read_results(path, build):
         failures[case] += ["[%s] %s" % (build, problem.text or problem.get("message")) for problem in problems]
         any_failed = any_failed or bool(problems)
         if skip is not None or element.get("result") == "skipped" or element.get("status") == "notrun":
-            reason = (skip.get("message") if skip is not None else None) or "see its log"  # older gtest gives none
+            # Older versions of gtest write no reason.
+            reason = (skip.get("message") if skip is not None else None) or "see its log"
             skipped[case] = " ".join(reason.split())
         elif element.get("classname") != ROSTEST_WRAPPER:
             passed.add(case)
@@ -47,8 +49,8 @@ def read_results(path, build):
 
 
 def read_build(folder):
-    """Adds all results of one build folder, and a failure for each test that failed although none of its cases did: it
-    crashed, hung or left no results."""
+    """Adds all results of one build folder. Also adds a failure for each test that failed without a failed case,
+    because it crashed, hung or left no results."""
     with open(os.path.join(folder, "CMakeCache.txt")) as stream:
         build = re.search(r"^CMAKE_BUILD_TYPE:\w+=(\w+)$", stream.read(), re.MULTILINE).group(1)
     told = set()
@@ -59,7 +61,8 @@ def read_build(folder):
     for path in sorted(glob.glob(os.path.join(folder, "sanitizer_reports", "*"))):
         with open(path, errors="replace") as stream:
             failures[build, "sanitizer_reports", os.path.basename(path)].append(stream.read())
-    results = glob.glob(os.path.join(folder, "Testing", "2*", "Test.xml"))  # test.sh removes those of earlier calls
+    # test.sh removes the results of earlier calls.
+    results = glob.glob(os.path.join(folder, "Testing", "2*", "Test.xml"))
     tests = ElementTree.parse(results[-1]).findall("Testing/Test") if results else []
     if not tests:
         failures[build, "ctest", "the tests"].append("no test has run")

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# From a clean system to a learned swing-up: installs, builds, runs an experiment, draws the result.
+# Installs, builds, runs an experiment and draws the result: from a clean system to a learned swing-up.
 # SPDX-License-Identifier: BSD-3-Clause
 set -euo pipefail
 # shellcheck source=workspace.sh
@@ -48,11 +48,11 @@ parse_arguments() {
     printf -v "${1#--}" %s "$2"
     shift 2
   done
-  # written out here, before anything changes the working directory
+  # The path is made absolute before the working directory changes.
   [[ -z $runs ]] || runs=$(realpath -m -- "$runs")
 }
 
-# A port for the ROS master: the usual one, or any free one when another master has it.
+# Prints a port for the ROS master: the default port, or any free port if another master uses the default port.
 free_master_port() {
   if (: </dev/tcp/localhost/11311) 2>/dev/null; then
     /usr/bin/python3 -c 'import socket; probe = socket.socket(); probe.bind(("", 0)); print(probe.getsockname()[1])'
@@ -61,14 +61,14 @@ free_master_port() {
   fi
 }
 
-# Which file a path names, and when it was changed last; empty if there is none.
+# Prints inode and time of the last change of a file; nothing if the file does not exist.
 identity() {
   stat -c '%i %y' -- "$1" 2>/dev/null || true
 }
 
-# Stops unless this call brought FOLDER/summary.yaml, which says that the experiment finished, with at least TRIALS trials.
-# roslaunch returns 0 whatever happened, so this file is the verdict. An experiment that is refused leaves that of an
-# earlier call as it is; one that finds all trials finished gives it a new time.
+# Fails unless this call has written FOLDER/summary.yaml, and the file says that the experiment is finished with at
+# least TRIALS trials. This file decides because roslaunch always returns 0. A refused experiment leaves the file of an
+# earlier call unchanged. An experiment whose trials are all finished already writes the file again.
 check_summary() {  # FOLDER TRIALS IDENTITY_BEFORE
   local summary=$1/summary.yaml again="the same command goes on after the last finished trial."
   [[ -f $summary && $(identity "$summary") != "$3" ]] || fail "the experiment wrote no new $summary: it did not finish.
@@ -137,5 +137,5 @@ main() {
   draw_and_print_result
 }
 
-# Sourced (by its test) it only defines the functions.
+# If a test sources this file, only the functions are defined.
 [[ ${BASH_SOURCE[0]} != "$0" ]] || main "$@"

@@ -34,8 +34,8 @@ reports anything.
 TEXT
 }
 
-# What only the tests need: linters, the check of .rosinstall, sanitizers with symbols in their reports, a compiler for
-# arm64, a screen for rviz, and other machines, played by this one.
+# Packages that only the tests need: linters, the check of .rosinstall, sanitizers with symbols in their reports, a
+# compiler for arm64, a virtual screen for rviz, and servers that play other machines.
 packages_to_test=(
   catkin-lint python3-wstool clang-format clang-tidy shellcheck flake8 git python3-pytest
   clang libclang-rt-dev libomp-dev llvm
@@ -45,14 +45,14 @@ packages_to_test=(
   slurmctld slurmd slurm-client munge
 )
 optional_packages+=(
-  catkin-lint            # with Noetic it has another name
+  catkin-lint            # has another name with Noetic
   python3-wstool         # not in Debian 13
-  libclang-rt-dev        # a part of clang itself in Debian 11
-  g++-aarch64-linux-gnu  # not where it is the native compiler
+  libclang-rt-dev        # part of clang itself in Debian 11
+  g++-aarch64-linux-gnu  # does not exist where arm64 is the native architecture
 )
 
-# Runs a command as root while no package may start a service (Debian policy 9.11.1: policy-rc.d), and disables those
-# that came with it: the tests start daemons of their own, and nobody asked for an sshd.
+# Runs a command as root. While it runs, no package may start a service (Debian policy 9.11.1: policy-rc.d). Afterwards,
+# services of new packages are disabled, because the tests start their own daemons and a user did not ask for an sshd.
 without_services='
 policy=${POLICY_RC_D:-/usr/sbin/policy-rc.d}
 if [ ! -e "$policy" ]; then
@@ -67,10 +67,10 @@ done
 for unit in $units; do
   [ ! -e /lib/systemd/system/$unit.service ] || ! command -v systemctl >/dev/null || systemctl disable $unit
 done'
-around_apt=(sh -c "$without_services" sh)  # for apt_install of workspace.sh
+around_apt=(sh -c "$without_services" sh)  # for apt_install in workspace.sh
 
 loop_programs=(sim_node mpc_node view_node trial_recorder model_node experiment_node run_experiment evaluate)
-# What computes and what reads bytes from outside; the other gtests take long to compile.
+# Tests of algorithms and of code that reads bytes from outside. The other gtests take long to compile.
 gtest_programs=(
   ddm_bag_io_test ddm_common_test ddm_images_test ddm_model_config_test ddm_model_test ddm_mpc_test ddm_msgs_test
   ddm_node_test ddm_robot_test
@@ -94,18 +94,18 @@ parse_arguments() {
   exit 2
 }
 
-# Runs the tests of a build folder whose names match, as many at a time as there are cores; CMake knows which must be
-# alone. What failed is told by the results.
+# Runs the tests of a build folder with matching names, one per core at a time. CMake marks tests that must run alone.
+# The result files contain the failures.
 run_tests() {  # BUILD_FOLDER PATTERN
   cd "$1" || return
-  rm -rf test_results/* Testing  # results of an earlier call must not count
-  : >DartConfiguration.tcl  # -T asks for this file, whose settings are all optional
+  rm -rf test_results/* Testing  # removes the results of earlier calls
+  : >DartConfiguration.tcl  # -T needs this file; all its settings are optional
   ctest -T Test -j "$(nproc)" -R "$2" --output-on-failure --timeout 600 </dev/null && return
-  # what failed, now and not only when the other builds are done
+  # Shows failures now, before the other builds are finished.
   /usr/bin/python3 "$checkout/ddm_launch/qa/test_report.py" "$1" | grep -A 40 '^FAILED' || true
 }
 
-# Where the build with a sanitizer is. Argument: address or thread, as for DDM_SANITIZE.
+# Prints the build folder for a sanitizer. Argument: address or thread, as for DDM_SANITIZE.
 sanitized_folder() {
   case $1 in
     address) echo "$DDM_WS/debug" ;;
@@ -113,8 +113,8 @@ sanitized_folder() {
   esac
 }
 
-# Portable instruction set, because reports shall be the same on all machines; -O1, because Eigen without any
-# optimisation takes minutes for what Release does in seconds.
+# Builds with a portable instruction set, so that reports are the same on all machines, and with -O1, because
+# unoptimised Eigen needs minutes for seconds of Release.
 build_sanitized() {  # address|thread TARGET...
   local folder jobs
   folder=$(sanitized_folder "$1")
@@ -126,7 +126,8 @@ build_sanitized() {  # address|thread TARGET...
     -DDDM_SANITIZE="$1" -DDDM_PILCO=OFF "${unity_flags[@]}" "${@:2}"
 }
 
-# A short experiment by each driver and evaluations side by side. What does not reach its end is a report, too.
+# Runs a short experiment with each driver, and several evaluations at a time. A program that does not finish counts as
+# a report.
 short_loop() {  # address|thread REPORTS
   local folder out port programs
   folder=$(sanitized_folder "$1") out=$(sanitized_folder "$1")/loop
@@ -145,7 +146,7 @@ short_loop() {  # address|thread REPORTS
   [[ -f $out/nodes/summary.yaml ]] || cp "$out/nodes.log" "$2/nodes"
 }
 
-# Runs tests and the loop; each file in build/sanitizer_reports is a report, which test_report.py takes for a failure.
+# Runs the tests and the loop. test_report.py counts each file in build/sanitizer_reports as a failure.
 run_sanitized() {  # address|thread PATTERN
   local reports
   reports=$(sanitized_folder "$1")/build/sanitizer_reports
@@ -153,9 +154,9 @@ run_sanitized() {  # address|thread PATTERN
   mkdir -p "$reports"
   export ASAN_OPTIONS=log_path=$reports/report:detect_stack_use_after_return=1:strict_string_checks=1
   export UBSAN_OPTIONS=log_path=$reports/report:print_stacktrace=1
-  # ROS's own libraries are not instrumented: without the last option their locks look like none
+  # The libraries of ROS are not instrumented. The last option ignores them, because their locks are invisible.
   export TSAN_OPTIONS=log_path=$reports/report:suppressions=$checkout/ddm_launch/qa/thread_suppressions.txt:ignore_noninstrumented_modules=1
-  # tells ThreadSanitizer what OpenMP, which is not instrumented either, does with threads
+  # Informs ThreadSanitizer about the threads of OpenMP, which is not instrumented either.
   OMP_TOOL_LIBRARIES=$(clang++ -print-resource-dir)/../../libarcher.so
   [[ $1 != thread ]] || export OMP_TOOL_LIBRARIES
   short_loop "$1" "$reports"
@@ -163,8 +164,9 @@ run_sanitized() {  # address|thread PATTERN
   if compgen -G "$reports/*" >/dev/null; then tail -n +1 "$reports"/*; else echo "no report"; fi
 }
 
-# Runs one target: a program of libFuzzer with sanitizers, and a folder of seeds. An input must not need much memory, or the
-# program did not check the input; inputs are a few times as long as seeds, since the time of a run grows with the length.
+# Runs one target: a program of libFuzzer with sanitizers, and a folder of seeds. The memory limit finds inputs that the
+# program does not check. Inputs have at most four times the length of the longest seed, because the time of a run grows
+# with the length.
 fuzz_target() {  # FOLDER_OF_SEEDS
   local target=${1##*/} package longest start=$SECONDS found=0
   package=$(basename "$(realpath "$1/../../..")")
@@ -178,7 +180,7 @@ fuzz_target() {  # FOLDER_OF_SEEDS
   return "$found"
 }
 
-# Runs all targets, as many at a time as there are cores.
+# Runs all targets, one per core at a time.
 run_fuzzing() {  # DIR RUNS SEED
   local out=$1 runs=$2 seed=$3 programs
   programs=$(sanitized_folder address)/devel/lib
@@ -189,7 +191,7 @@ run_fuzzing() {  # DIR RUNS SEED
   printf '%s\n' "$checkout"/ddm_*/fuzz/corpus/* | xargs -P "$(nproc)" -I FOLDER bash -c 'fuzz_target FOLDER'
 }
 
-# From the committed seeds on, always the same draws. A finding counts as a report of the sanitizers.
+# Fuzzes from the committed seeds, always with the same random numbers. A finding counts as a report of a sanitizer.
 fuzz_shortly() {
   local out reports
   out=$(sanitized_folder address)/fuzzing reports=$(sanitized_folder address)/build/sanitizer_reports
@@ -199,15 +201,15 @@ fuzz_shortly() {
   cat "$out/fuzzing.csv"
 }
 
-# Builds in a session of its own, whose processes run only where all others leave a core idle.
+# Starts the Debug build in its own session. Its processes run only while other processes leave a core idle.
 start_debug_build() {
   mkdir -p "$DDM_WS/debug"
   rm -f "$DDM_WS/debug/build.code"
-  : >"$DDM_WS/debug/build.log"  # there before anybody follows it
+  : >"$DDM_WS/debug/build.log"  # must exist before finish_debug_build reads it
   export checkout
   setsid bash -c "$(declare -p unity_flags debug_targets && declare -f)"'
     renice -n 19 "$$" >/dev/null || true
-    # Linux shares the cores between sessions first, by a niceness of their own
+    # Linux shares the cores first between sessions, which have their own niceness.
     { echo 19 >"/proc/$$/autogroup"; } 2>/dev/null || true
     code=0
     build_sanitized address "${debug_targets[@]}" || code=$?
@@ -233,7 +235,7 @@ phase() {  # TITLE COMMAND...
   ((code == 0)) || fail "$title: failed with code $code. Remedy: see the first error above."
 }
 
-# Builds and runs what the mode says; leaves the build folders in `results`.
+# Builds and runs the tests of a mode. Sets `results` to the build folders.
 run_mode() {
   if [[ $mode == thread ]]; then
     phase "Build with ThreadSanitizer into $DDM_WS/thread/devel" \
@@ -244,7 +246,7 @@ run_mode() {
   fi
   phase "Release build into $DDM_WS/devel" build_release all tests
   results=("$DDM_WS/build")
-  # most tests wait for something, so the Debug build takes the processor time that they leave
+  # The Debug build uses the processor time during which the tests wait.
   [[ $mode == part ]] || start_debug_build
   phase "Tests on the Release build" run_tests "$DDM_WS/build" "$pattern"
   [[ $mode == part ]] && return
@@ -257,11 +259,11 @@ run_mode() {
 main() {
   pattern=.
   parse_arguments "$@"
-  # the verdict is the last line, also when no test could be run
+  # The last line is a verdict even if no test could run.
   trap '[[ $? == 0 || -n ${reported:-} ]] || echo "0 passed, 1 failed"
     [[ -z ${debug_build:-} ]] || kill -- "-$debug_build" 2>/dev/null || true' EXIT
   use_system_environment
-  # tests run in folders of their own
+  # The path must be absolute, because tests run in their own folders.
   [[ -z ${DDM_PILCO_VECTORS:-} ]] || DDM_PILCO_VECTORS=$(realpath -m -- "$DDM_PILCO_VECTORS")
   check_system
   ensure_localhost_resolves
@@ -282,5 +284,5 @@ main() {
   /usr/bin/python3 "$checkout/ddm_launch/qa/test_report.py" "${results[@]}"
 }
 
-# Sourced (by its test) it only defines the functions.
+# If a test sources this file, only the functions are defined.
 [[ ${BASH_SOURCE[0]} != "$0" ]] || main "$@"

@@ -1,4 +1,4 @@
-# Sourced by demo.sh and test.sh: from a bare system to a built catkin workspace that links this checkout.
+# Functions for demo.sh and test.sh: from a bare system to a built catkin workspace that links this checkout.
 # SPDX-License-Identifier: BSD-3-Clause
 # shellcheck shell=bash disable=SC2034
 
@@ -13,9 +13,10 @@ fail() {
 
 warn() { printf '\nWARNING: %s\n' "$*" >&2; }
 
-opt_ros=${opt_ros:-/opt/ros}  # where ROS's own packages (Noetic) and those of ROS-O put ROS; Debian's own are in /usr
+# Folder of ROS Noetic and ROS-O. Debian's own packages of ROS are in /usr.
+opt_ros=${opt_ros:-/opt/ros}
 
-# Prints the setup file of a ROS 1 in $opt_ros, if there is one.
+# Prints the setup file of ROS 1 in $opt_ros, if it exists.
 ros_setup() {
   local setup
   for setup in "$opt_ros"/{noetic,one}/setup.bash; do
@@ -23,14 +24,14 @@ ros_setup() {
   done
 }
 
-# Names of Debian and Ubuntu for what builds and runs everything, tests included (both scripts share one build).
+# Packages of Debian and Ubuntu for building and running all programs and tests (both scripts share one build).
 packages_to_run=(
-  # compiler, build tools; `study reproduce` runs make as well
+  # compiler and build tools; `study reproduce` also needs make
   build-essential cmake python3-setuptools
   # libraries
   libopencv-imgproc-dev libopencv-imgcodecs-dev libeigen3-dev libceres-dev libyaml-cpp-dev libbz2-dev
   libboost-dev libboost-program-options-dev libboost-filesystem-dev libbenchmark-dev
-  # plants of model files: their physics, and their pictures without a screen
+  # plants with a model file: physics, and images without a screen
   libmujoco-dev libegl-dev libegl1 libgl1-mesa-dri libtinyxml2-dev
   # tests
   libgtest-dev
@@ -39,7 +40,7 @@ packages_to_run=(
   # sweeps
   parallel
 )
-# ROS 1 as Debian packages it. Any other ROS brings its own packages: rosdep finds them by package.xml.
+# ROS 1 from Debian. Any other ROS has its own packages, which rosdep finds through package.xml.
 [[ -n $(ros_setup) ]] || packages_to_run+=(
   catkin python3-catkin-pkg
   # messages: the .msg files, then their C++ headers
@@ -59,19 +60,19 @@ packages_to_run=(
   python3-rosparam python3-rosmsg python3-diagnostic-msgs
   rosbash rospack-tools rviz
 )
-# Packages that some systems do not have. The comment behind a package says what is left out without it.
-optional_packages=(libmujoco-dev)  # plants of model files: not in Debian 11 and Ubuntu 22.04
+# Packages that some systems lack. The comment after a package says what is missing without it.
+optional_packages=(libmujoco-dev)  # plants with a model file: not in Debian 11 and Ubuntu 22.04
 
-# Sources a catkin setup file, which reads variables that need not exist.
+# Sources a catkin setup file. `set +u`, because the file reads variables that may be unset.
 source_setup() {  # FILE
   local setup=$1
-  shift  # it takes the arguments of its caller for its own
+  shift  # otherwise the setup file would read the arguments of this function
   set +u
   . "$setup"
   set -u
 }
 
-# The system's own tools and libraries come first, whatever Python or ROS environment the caller has active.
+# Puts the system's own tools and libraries first, even if the caller has activated another Python or ROS environment.
 use_system_environment() {
   export PATH=/usr/bin:/bin:/usr/sbin:/sbin:$PATH
   unset PYTHONPATH PYTHONHOME LD_LIBRARY_PATH CMAKE_PREFIX_PATH
@@ -80,12 +81,12 @@ use_system_environment() {
   setup=$(ros_setup)
   [[ -z $setup ]] || source_setup "$setup"
   export PYTHONNOUSERSITE=1
-  export PYTHONUNBUFFERED=1 ROSCONSOLE_STDOUT_LINE_BUFFERED=1  # progress shows at once, through pipes too
-  # only this machine reaches master and nodes, unless the caller names an address
+  export PYTHONUNBUFFERED=1 ROSCONSOLE_STDOUT_LINE_BUFFERED=1  # programs show progress immediately, also through pipes
+  # Only this machine can reach master and nodes, unless the caller sets an address.
   [[ -n ${ROS_IP:-}${ROS_HOSTNAME:-} ]] || export ROS_IP=127.0.0.1
 }
 
-# Says which system this is, and warns if it is none that everything is tested on. Argument: an os-release file.
+# Prints the name of this system, and warns if it is not one of the tested systems. Argument: an os-release file.
 check_system() {
   local file=${1:-/etc/os-release} id='' version='' name='an unknown system' setup
   setup=$(ros_setup)
@@ -103,17 +104,17 @@ If something fails, see 'Other systems' in $checkout/doc/install.md, or use a co
   fi
 }
 
-# Prints those of its arguments that are not installed.
+# Prints those arguments that are not installed.
 missing_packages() {
   local installed package
-  # dpkg-query fails when it does not know one of the names; what it knows it prints all the same
+  # dpkg-query fails if it does not find one of the names, but prints the others.
   installed=$(dpkg-query -W -f '${db:Status-Status} ${Package}\n' "$@" 2>/dev/null || true)
   for package in "$@"; do
     grep -qxF -- "installed $package" <<<"$installed" || echo "$package"
   done
 }
 
-# Runs a command as root, through sudo if need be. Arguments: what to do in words, the command.
+# Runs a command as root, through sudo if necessary. Arguments: a description of the action, then the command.
 as_root() {
   local words=$1
   shift
@@ -128,14 +129,16 @@ Remedy: have an administrator run, then call this script again:
   fi
 }
 
-around_apt=()  # a command that runs apt-get: test.sh sets it
+around_apt=()  # prefix for apt-get commands; test.sh sets it
 
-# Installs packages by apt-get. Arguments: what apt-get is to do before, or nothing; the packages.
+# Installs packages with apt-get. Arguments: a command to run before the installation, or an empty string; then the
+# packages.
 apt_install() {
   local before=$1
   shift
   (($#)) || return 0
-  # One command, so that a user without root can give the printed line to an administrator. It waits for another apt to end.
+  # One command, so that users without root can give the printed line to an administrator. It waits until another apt
+  # has finished.
   local apt='apt-get -o DPkg::Lock::Timeout=300'
   echo "Installing $# missing packages: $*"
   as_root "install packages" env DEBIAN_FRONTEND=noninteractive "${around_apt[@]}" sh -c \
@@ -145,7 +148,7 @@ Remedy: check the network and /etc/apt, then call this script again. If this sys
 'Other systems' in $checkout/doc/install.md."
 }
 
-# Prints those of its arguments that the package lists of this system have.
+# Prints those arguments that exist in the package lists of this system.
 available_packages() {
   local package
   for package in "$@"; do
@@ -153,8 +156,8 @@ available_packages() {
   done
 }
 
-# Installs what is missing of its arguments; asks for no password and no network when nothing is. Optional packages that
-# this system does not have are named and left out.
+# Installs those arguments that are missing. If nothing is missing, it needs neither a password nor a network. Skips
+# optional packages that this system does not have, and names them.
 install_packages() {
   local package missing required=() optional=() available
   mapfile -t missing < <(missing_packages "$@")
@@ -177,7 +180,7 @@ install_packages() {
   done
 }
 
-# Installs what package.xml lists where ROS is not Debian's own. The build tells what is missing if rosdep cannot.
+# Installs the packages in package.xml if ROS is not Debian's own. If rosdep fails, the build reports what is missing.
 install_by_rosdep() {
   [[ -n $(ros_setup) ]] || return 0
   if ! command -v rosdep >/dev/null; then
@@ -190,7 +193,7 @@ Remedy, if the build misses one: install rosdep (python3-rosdep), run 'sudo rosd
     warn "rosdep did not install everything that package.xml lists: see its lines above. The build is tried all the same."
 }
 
-# ROS needs the name localhost, which a bare system (made by debootstrap, say) does not know.
+# Adds the name localhost, which ROS needs and bare systems (for example, made by debootstrap) lack.
 ensure_localhost_resolves() {
   getent hosts localhost >/dev/null && return
   echo "The name localhost does not resolve: adding the line '127.0.0.1 localhost' to /etc/hosts"
@@ -206,7 +209,7 @@ Remedy: set DDM_WS to another folder."
 Remedy: set DDM_WS to a folder outside of it."
   mkdir -p "$DDM_WS/src" || fail "cannot make $DDM_WS/src. Remedy: set DDM_WS to a folder that you may write."
   export DDM_WS ROS_HOME=$DDM_WS/ros_home
-  [[ $checkout == "$DDM_WS/src/"* ]] && return  # cloned into the source space: nothing to link
+  [[ $checkout == "$DDM_WS/src/"* ]] && return  # cloned into the source space, so no link is needed
   local link=$DDM_WS/src/ddm
   if [[ ! -e $link && ! -L $link ]]; then
     ln -s "$checkout" "$link"
@@ -216,7 +219,8 @@ Remedy: remove it, or set DDM_WS to another folder."
   fi
 }
 
-# Compiler jobs: one per core, but two gigabytes for each. ROS_PARALLEL_JOBS (catkin's own) wins.
+# Prints the number of compiler jobs: one per core, with at least two gigabytes for each. catkin's variable
+# ROS_PARALLEL_JOBS takes precedence.
 job_flags() {
   if [[ -n ${ROS_PARALLEL_JOBS:-} ]]; then
     echo "$ROS_PARALLEL_JOBS"
@@ -229,17 +233,17 @@ job_flags() {
   echo "-j$((cores < memory ? cores : memory))"
 }
 
-# From nothing, a target is built fastest from all its sources at once: most of the time goes into headers.
+# A first build is fastest if all sources of a target are compiled together, because most of the time goes into headers.
 unity_flags=(-DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=0)
 
-# Makes a devel space with the folders whose paths catkin writes into the environment of tests. It does so once, at the
-# first configuration, and leaves out those that are not there.
+# Makes a devel space with the folders that catkin writes into the environment of tests. catkin does so only at the
+# first configuration, and only for folders that exist.
 make_devel_space() {  # FOLDER
   mkdir -p "$1/bin" "$1/lib/pkgconfig" "$1/lib/python3/dist-packages"
 }
 
-# The Release build, in $DDM_WS/build and $DDM_WS/devel. Arguments: make targets, or none for all programs.
-# demo.sh and test.sh must pass the same flags, or each would rebuild what the other built.
+# Runs the Release build in $DDM_WS/build and $DDM_WS/devel. Arguments: make targets, or none for all programs. demo.sh
+# and test.sh must use the same flags, because otherwise each script would rebuild the results of the other.
 build_release() {
   local flags=(-DCMAKE_BUILD_TYPE=Release -DDDM_AVX2="${DDM_AVX2:-ON}" -DDDM_WERROR=OFF "${unity_flags[@]}") jobs
   [[ -z ${CI:-} ]] || flags[2]=-DDDM_WERROR=ON

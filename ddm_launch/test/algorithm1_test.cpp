@@ -1,4 +1,4 @@
-// Tests of Algorithm 1: the order of its phases, what it asks of a driver, and how it resumes.
+// Tests of Algorithm 1: the order of its phases, its calls of the driver, and how it resumes.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "algorithm1.h"
 
@@ -52,7 +52,7 @@ class ExperimentTest : public ::testing::Test {
   Configuration configuration_ = toyConfiguration(scratch_.file("run"));
   ObedientDriver driver_;
   std::string terminal_;
-  std::vector<size_t> shown_;  ///< numbers of rows
+  std::vector<size_t> shown_;  ///< number of rows in each call of `show`
 };
 
 TEST_F(ExperimentTest, EachTrialIsRunThenLearnedFromThenEvaluated) {
@@ -61,7 +61,7 @@ TEST_F(ExperimentTest, EachTrialIsRunThenLearnedFromThenEvaluated) {
                                   "evaluate 1", "run 2", "train 2", "evaluate 2"}));
   EXPECT_EQ(shown_, (std::vector<size_t>{0, 1, 2, 3}));
   driver_.calls.clear();
-  fs::remove(file("summary.yaml"));  // as if it had ended before its verdict
+  fs::remove(file("summary.yaml"));  // as if the experiment had been stopped before the summary
   run();
   EXPECT_EQ(driver_.calls, Calls());
   EXPECT_TRUE(fs::exists(file("summary.yaml")));
@@ -112,7 +112,7 @@ TEST_F(ExperimentTest, BagsToStartFromCountAsTrialsBeforeTheFirst) {
   EXPECT_EQ(driver_.bags_of_training[1],
             (Calls{before[0], before[1], file("trial_000/trial.bag")}));
   driver_.calls.clear();
-  configuration_.experiment.trials = 1;  // taken up: nothing is started once more
+  configuration_.experiment.trials = 1;  // resumed: the block `start` is not used a second time
   run();
   EXPECT_EQ(driver_.calls,
             (Calls{"use " + file("trial_000/model.ddm"), "run 1", "train 1", "evaluate 1"}));
@@ -171,7 +171,7 @@ TEST_F(ExperimentTest, ARowTellsTheErrorInTheUnitOfThePlantAndItsReturn) {
   testing::usePlant(testing::plantOf(traits), &configuration_);
   configuration_.experiment.trials = 0;
   driver_.state = (Eigen::VectorXd(2) << 0.75, 0.0)
-                      .finished();  // a quarter of a metre away, torques 0, 0.1, ... 2.9
+                      .finished();  // 0.25 m from the goal; the torques are 0, 0.1, ... 2.9
   run();
   const TrialRow row = parseTrialsCsv(textOf(file("trials.csv")), "trials.csv").at(0);
   EXPECT_EQ(row.evaluation.final_error, 0.25);
@@ -198,7 +198,8 @@ TEST_F(ExperimentTest, AGreedyRunIsJudgedByTheGoalThatWasDrawnForIt) {
 TEST_F(ExperimentTest, WithoutGroundTruthSuccessIsThatInFeatures) {
   driver_.goal_distance = 0.2;
   configuration_.evaluation.goal_distance = 0.3;
-  driver_.state = Eigen::VectorXd::Zero(2);  // what is known to be wrong stays wrong
+  // with ground truth, the distance in features does not count
+  driver_.state = Eigen::VectorXd::Zero(2);
   configuration_.experiment.trials = 0;
   run();
   EXPECT_NE(textOf(file("trials.csv")).find("\n7,0,30,0,0,180.0,"), std::string::npos)
@@ -243,7 +244,7 @@ TEST_F(ExperimentTest, AFinishedExperimentIsSummedUpAndOnlyTheTimeOfItsVerdictCh
 
 TEST_F(ExperimentTest, ADriverThatFailsBeforeTheFirstResultLeavesTheFolderAsItWas) {
   configuration_.start.bags = {"/a.bag"};
-  driver_.fails_at = 1;  // train 0
+  driver_.fails_at = 1;  // call 1 is "train 0"
   EXPECT_THROW(run(), std::runtime_error);
   EXPECT_FALSE(fs::exists(scratch_.file("run")));
   configuration_ = toyConfiguration(scratch_.file("run"));
@@ -252,7 +253,7 @@ TEST_F(ExperimentTest, ADriverThatFailsBeforeTheFirstResultLeavesTheFolderAsItWa
   const auto before = testing::fingerprintOf(scratch_.file("run"));
   configuration_.experiment.trials = 3;
   driver_ = ObedientDriver();
-  driver_.fails_at = 1;  // use the model of trial 2
+  driver_.fails_at = 1;  // call 1 loads the model of trial 2
   EXPECT_THROW(run(), std::runtime_error);
   EXPECT_EQ(testing::fingerprintOf(scratch_.file("run")), before);
 }
@@ -260,7 +261,7 @@ TEST_F(ExperimentTest, ADriverThatFailsBeforeTheFirstResultLeavesTheFolderAsItWa
 TEST_F(ExperimentTest, OnlyTheEpisodesThatAreNotRecordedAreRunAgain) {
   configuration_.trial.episodes = 2;
   configuration_.experiment.trials = 0;
-  driver_.fails_at = 2;  // run 1, the second episode of trial 0
+  driver_.fails_at = 2;  // call 2 is "run 1", the second episode of trial 0
   EXPECT_THROW(run(), std::runtime_error);
   const std::string bag = textOf(file("trial_000/trial.bag"));
   driver_ = ObedientDriver();
@@ -270,7 +271,7 @@ TEST_F(ExperimentTest, OnlyTheEpisodesThatAreNotRecordedAreRunAgain) {
 }
 
 TEST_F(ExperimentTest, ARecordingThatCannotBeReadIsRefusedAndKept) {
-  driver_.fails_at = 2;  // train 0
+  driver_.fails_at = 2;  // call 2 is "train 0"
   EXPECT_THROW(run(), std::runtime_error);
   testing::writeText(file("trial_000/trial.bag"), "no bag");
   driver_ = ObedientDriver();
@@ -281,11 +282,11 @@ TEST_F(ExperimentTest, ARecordingThatCannotBeReadIsRefusedAndKept) {
 }
 
 TEST_F(ExperimentTest, ATrainingIsRepeatedWhereItsTrialIsRecordedAgain) {
-  driver_.fails_at = 3;  // evaluate 0
+  driver_.fails_at = 3;  // call 3 is "evaluate 0"
   EXPECT_THROW(run(), std::runtime_error);
   fs::remove(file("trial_000/trial.bag"));
   driver_ = ObedientDriver();
-  driver_.fails_at = 2;  // train 0
+  driver_.fails_at = 2;  // call 2 is "train 0"
   EXPECT_THROW(run(), std::runtime_error);
   EXPECT_EQ(driver_.calls, (Calls{"run 0", "train 0"}));
   driver_ = ObedientDriver();
@@ -321,7 +322,7 @@ TEST_F(ExperimentTest, ADriverThatFailsLeavesFinishedWorkToWhichTheSameCallAddsT
   const Calls rest[] = {{"use " + file("trial_000/model.ddm"), "run 1", "train 1", "evaluate 1"},
                         {"train 1", "evaluate 1", "run 2", "train 2"},
                         {"use " + file("trial_001/model.ddm"), "evaluate 1", "run 2", "train 2"}};
-  for (const size_t call : {4, 5, 6}) {  // run 1, train 1, evaluate 1
+  for (const size_t call : {4, 5, 6}) {  // "run 1", "train 1", "evaluate 1"
     fs::remove_all(scratch_.file("run"));
     driver_ = ObedientDriver();
     driver_.fails_at = call;

@@ -1,4 +1,4 @@
-# Sources of each core library compile for arm64, with the build settings of all packages and with no header of ROS.
+# Sources of each core library compile for arm64 with the settings of all packages and without headers of ROS.
 # SPDX-License-Identifier: BSD-3-Clause
 import glob
 import os
@@ -11,10 +11,10 @@ import pytest
 from rooms import CHECKOUT
 
 COMPILER = "aarch64-linux-gnu-g++"
-# Among them the vectors of arctan, the threads of the objective and the clock of the planner.
+# These files contain the vectorised arctan, the threads of the objective and the clock of the planner.
 SOURCES = ["ddm_sim/src/pendulum.cpp", "ddm_model/src/arctan.cpp", "ddm_model/src/objective.cpp", "ddm_mpc/src/planner.cpp"]
 FOLDERS = ["ddm_sim", "ddm_model", "ddm_mpc", "ddm_msgs/common"]
-# Objects only: libraries to link with exist for this machine alone, but headers are the same on all.
+# The project only compiles: libraries to link with exist for this machine alone, but headers are the same for both.
 PROJECT = """
 cmake_minimum_required(VERSION 3.16)
 project(arm64 CXX)
@@ -40,12 +40,12 @@ def test_sources_of_the_cores_become_objects_without_flags_of_another_processor(
         checkout=CHECKOUT, sources=" ".join(os.path.join(CHECKOUT, path) for path in SOURCES),
         includes=" ".join(os.path.join(CHECKOUT, folder, "include") for folder in FOLDERS)))
     build = str(tmp_path / "build")
-    # without optimisation, which takes a while
+    # The build does not optimise, because optimising would take much longer.
     run("cmake", "-S", str(tmp_path), "-B", build, "-DCMAKE_BUILD_TYPE=None", "-DCMAKE_CXX_COMPILER=" + COMPILER,
         "-DCMAKE_SYSTEM_NAME=Linux", "-DCMAKE_SYSTEM_PROCESSOR=aarch64")
     with open(os.path.join(build, "CMakeFiles", "cores.dir", "flags.make")) as stream:
         flags = stream.read()
-    assert "-Wextra" in flags  # the settings of all packages
+    assert "-Wextra" in flags  # the settings of all packages are used
     assert re.findall(r"-m(?:arch|cpu|tune|avx|sse|fma)\S*", flags) == []
     run("cmake", "--build", build, "--parallel", str(os.cpu_count()))
     objects = glob.glob(os.path.join(build, "**", "*.cpp.o"), recursive=True)

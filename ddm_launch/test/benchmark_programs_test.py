@@ -1,4 +1,4 @@
-# What `qa benchmark` runs, for a short time: nodes and kernels give what its table needs.
+# A short run of `qa benchmark`: nodes and kernels produce all values of its table.
 # SPDX-License-Identifier: BSD-3-Clause
 from unittest import mock
 

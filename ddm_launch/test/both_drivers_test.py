@@ -1,4 +1,4 @@
-# One experiment by the nodes and by run_experiment: both leave the same files, byte by byte but for times.
+# The ROS nodes and run_experiment write the same files in one experiment, byte by byte except for times.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 
@@ -28,7 +28,8 @@ DRAWN_GOALS = QUICK + "trial: {num_steps: 26, episodes: 1}\nplant: {episode_fram
 
 
 def bag_of(folder, name):
-    """(times of the images since the first one [steps], times of the torques likewise, contents of the goal images)."""
+    """Returns (times of the images since the first image [steps], times of the torques likewise, contents of the
+    goal images)."""
     times, goals = {"camera/image_raw": [], "torque": []}, []
     with rosbag.Bag(os.path.join(folder, name)) as bag:
         for topic, message, _ in bag.read_messages():
@@ -41,7 +42,7 @@ def bag_of(folder, name):
 
 
 def check_nuisances(nodes, bags):
-    """The nuisance of the argument and those of the file are on, and images are lost."""
+    """The disturbances of the argument and of the file are active, and some images are lost."""
     camera = read_yaml(nodes, "config.yaml")["camera"]
     assert (camera["clutter"], camera["noise_std"], camera["delay"]) == (0.6, 0.1, 1)
     for images, torques in (bag[0] for bag in bags.values()):
@@ -55,14 +56,15 @@ def check_episodes(nodes, bags):
 
 
 def check_tile(nodes, _):
-    """Two torques and lengths stand under the plant's own names; the error is the distance to the goal in pixels."""
+    """The two torques and the two lengths have the plant's own names; the error is the distance to the goal in
+    pixels."""
     assert read_rows(nodes, "trial_001", "torques.csv")[0] == ["step", "dx_px", "dy_px", "exploratory"]
     assert read_rows(nodes, "evaluation_001", "trajectory.csv")[0] == ["step", "time_s", "x_px", "y_px"]
     assert read_yaml(nodes, "config.yaml")["goal"] == {"error_unit": "px", "tolerance": 2.0}
 
 
 def check_drawn_goals(nodes, bags):
-    """Each bag holds the goal of its trial or evaluation; an evaluation has its own length and a return."""
+    """Each bag holds the goal of its trial or evaluation. An evaluation has its own length and a return."""
     goals = [goals for _, goals in bags.values()]
     assert len(goals) == 2 * (TRIALS + 1) == len({images[0] for images in goals}) and {len(images) for images in goals} == {1}
     for k in range(TRIALS + 1):

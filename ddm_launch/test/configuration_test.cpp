@@ -1,4 +1,4 @@
-// Tests of the configuration: every file that is shipped loads, and what contradicts is refused.
+// Tests of the configuration: all files of the packages load, and contradictions are refused.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "configuration.h"
 
@@ -45,7 +45,7 @@ Configuration read(const Arguments& arguments) {
   return readConfiguration(&reader);
 }
 
-/// What --preset, --plant and --config say.
+/// The arguments --preset, --plant and --config.
 Arguments arguments(const std::string& preset, const std::string& plant,
                     const std::vector<std::string>& configs = {}) {
   Arguments given;
@@ -55,7 +55,7 @@ Arguments arguments(const std::string& preset, const std::string& plant,
   return given;
 }
 
-/// A configuration that a YAML text changes.
+/// Reads a configuration with the blocks of a YAML text as an additional layer.
 Configuration readText(const std::string& text, const std::string& preset = "paper") {
   const TempFolder folder;
   writeText(folder.file("differs.yaml"), text);
@@ -100,7 +100,7 @@ TEST(Configuration, ThePaperPresetHoldsTheNumbersOfThePaper) {
     EXPECT_EQ(all.plant->block()[key].as<double>(), 1.0) << key;
   }
   EXPECT_EQ(all.plant_info.tolerance, 10.0);
-  // a plant knows better than a preset what it needs
+  // The file of a plant overrides the preset.
   EXPECT_EQ(all.model.training.max_iterations, 500);
   EXPECT_EQ(read(arguments("paper", "moving_tile")).model.training.max_iterations, 3000);
 }
@@ -116,10 +116,10 @@ TEST(Configuration, ANameThatDoesNotExistIsRefusedWithThoseThatDo) {
                         {"'" + name + "'", "nuisance/clutter", "oracle/suite_reacher"}));
   }
   EXPECT_TRUE(refused(arguments("paper", "pendulum", {"nuisance/scene_camera"}),
-                      {"plant/camera_shift"}));  // this plant has no scene
+                      {"plant/camera_shift"}));  // only plants of a model file have a scene
   EXPECT_TRUE(throwsNaming<std::invalid_argument>([] { methodKind("oracel"); },
                                                   {"unknown method 'oracel'", "ddm, oracle"}));
-  // sim.yaml stands in the same folder but is no plant
+  // sim.yaml is in the same folder but describes no plant.
   for (const std::string plant : {"pendulumm", "sim", "", "../config/pendulum"}) {
     EXPECT_TRUE(refused(arguments("paper", plant),
                         {"'" + plant + "'", "moving_tile",
@@ -134,7 +134,7 @@ TEST(Configuration, EveryNamedConfigurationIsReadAndChangesSomething) {
   for (const auto& group : all) {
     for (const auto& one : group.second) {
       const std::string name = one.first.Scalar(), full = group.first.Scalar() + "/" + name;
-      const bool of_scene = name.rfind("scene_", 0) == 0;  // for plants of a model file alone
+      const bool of_scene = name.rfind("scene_", 0) == 0;  // only for plants of a model file
       const bool of_others = group.first.Scalar() == "launch";
       if (group.first.Scalar() == "oracle") {
         EXPECT_NO_THROW(plantFile(name)) << full;
@@ -217,7 +217,7 @@ TEST(Configuration, WhatJustFitsIsAccepted) {
   EXPECT_NO_THROW(readText("trial: {num_steps: 30}\nmodel: {pca_dim: 10, order: 29}\n"));
   EXPECT_NO_THROW(readText("mpc: {time_budget: 0.2}\n"));
   EXPECT_NO_THROW(readText("mpc: {cost: time}\nrobot: {max_torque: [6, 6, 6]}\n"));
-  EXPECT_NO_THROW(readText("robot: {max_torque: [6, 6, 6, 6, 6, 6]}\n"));  // cost: distance
+  EXPECT_NO_THROW(readText("robot: {max_torque: [6, 6, 6, 6, 6, 6]}\n"));  // the cost is `distance`
 }
 
 TEST(Configuration, WhatIsSavedIsReadBackAsTheSameConfiguration) {
@@ -235,7 +235,7 @@ TEST(ParameterReferences, HaveBlocksThatEveryProgramLeavesAlone) {
   for (const char* package : {"ddm_launch", "ddm_model", "ddm_mpc", "ddm_sim"}) {
     const std::string folder = std::string(DDM_LAUNCH_SOURCE_DIR "/../") + package + "/config/";
     for (const std::string& name : namesIn(folder)) {
-      if (name == "named") continue;  // holds configurations, not blocks
+      if (name == "named") continue;  // contains named configurations, not blocks
       const ParamReader reader = ParamReader::fromFiles({folder + name + ".yaml"});
       EXPECT_EQ(reader.problems(), std::vector<std::string>()) << folder << name;
     }

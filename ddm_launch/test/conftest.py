@@ -1,17 +1,17 @@
-# Lets the tests of this folder import the Python packages of study and qa, and gives them a ROS master.
+# Makes the Python packages of study and qa importable for all tests of this folder, and provides a ROS master.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 
 import pytest
 
-import rooms  # noqa: F401: the Python packages that are not installed
-import ddm_launch  # noqa: F401: mends rospy for Python 3.9
+import rooms  # noqa: F401: Python packages that are not installed
+import ddm_launch  # noqa: F401: fixes rospy for Python 3.9
 from ddm_qa.processes import Process, free_port, on_this_machine
 
 
 @pytest.fixture(scope="session")
 def master():
-    """A ROS master for all tests of this process, which is the node `/test`."""
+    """A ROS master for all tests of this process. The process is the node `/test`."""
     import rospy  # pylint: disable=import-outside-toplevel
     port = free_port()
     os.environ.update(on_this_machine(ROS_MASTER_URI="http://localhost:%d" % port))

@@ -1,4 +1,4 @@
-# The core libraries know nothing of ROS: neither what they include nor what they link.
+# The core libraries neither include nor link anything of ROS.
 # SPDX-License-Identifier: BSD-3-Clause
 import glob
 import os
@@ -9,7 +9,7 @@ import pytest
 
 from rooms import CHECKOUT
 
-# library -> folder with include/ and src/. The last one may be left out of a build.
+# The folder with include/ and src/ of each library. A build may omit the last library.
 CORES = {"ddm_sim": "ddm_sim", "ddm_model": "ddm_model", "ddm_mpc": "ddm_mpc", "ddm_robot": "ddm_sim/robot",
          "ddm_mujoco": "ddm_sim/mujoco"}
 ROS_INCLUDE = re.compile(
@@ -31,7 +31,7 @@ def test_a_core_includes_and_links_nothing_of_ros_and_exports_no_functions_of_ei
                                    for prefix in os.environ["CMAKE_PREFIX_PATH"].split(":")) if os.path.isfile(path)), None)
     if path is None and library == "ddm_mujoco":
         pytest.skip("the build is without this library")
-    needed = output_of("ldd", path)  # what the loader says: all libraries that it needs, directly or not
+    needed = output_of("ldd", path)  # ldd lists all direct and indirect dependencies
     assert "libstdc++" in needed and "not found" not in needed
     assert ROS_LIBRARY.findall(needed) == []
     if library == "ddm_common":
@@ -45,6 +45,6 @@ def test_a_core_includes_and_links_nothing_of_ros_and_exports_no_functions_of_ei
         assert ROS_INCLUDE.findall(text) == [], source
         used = set(re.findall(r'#include [<"]ddm_common/([^>"]+)', text))
         assert used <= {"option_checks.h", "random_stream.h"}, source  # these headers need no library
-    # Functions of Eigen that libraries with other compiler settings would use.
+    # The library must not export functions of Eigen, because libraries with other compiler settings would call them.
     exported = output_of("nm", "--dynamic", "--defined-only", path)
     assert "3ddm" in exported and re.findall(r" (_ZN?K?5Eigen\S+)", exported) == []

@@ -1,4 +1,4 @@
-# evaluate on a plant of a model file: the same rows however many runs there are at a time.
+# evaluate on a plant of a model file: the rows do not depend on the number of parallel evaluations.
 # SPDX-License-Identifier: BSD-3-Clause
 import pytest
 
@@ -6,7 +6,7 @@ from processes import call, find_program, has_mujoco, run_experiment
 from run_files import read_rows, read_yaml
 
 SEEDS = 3
-PLANT = ["--preset", "debug", "--plant", "suite_reacher_hard",  # draws goals and has a reward
+PLANT = ["--preset", "debug", "--plant", "suite_reacher_hard",  # this plant draws goals and has a reward
          "--set", "training/num_starts=1", "--set", "training/max_iterations=20", "--set", "plant/episode_frames=150"]
 
 
@@ -24,5 +24,5 @@ def test_jobs_change_nothing_and_the_configuration_names_the_renderer(tmp_path):
         header, *rows = read_rows(folder, "evaluation.csv")
         tables.append([{name: value for name, value in zip(header, row) if not name.startswith("plan_ms")} for row in rows])
     assert tables[0] == tables[1]
-    assert len({row["final_error"] for row in tables[0]}) == SEEDS  # torques differ, seed by seed
+    assert len({row["final_error"] for row in tables[0]}) == SEEDS  # each seed has other torques
     assert all(0.0 <= float(row["return"]) <= 150.0 for row in tables[0])

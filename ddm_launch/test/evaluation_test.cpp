@@ -1,4 +1,4 @@
-// Tests of the evaluator: when a greedy run is a success.
+// Tests of the evaluation: when a greedy evaluation counts as a success.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "evaluation.h"
 
@@ -22,14 +22,14 @@ class EvaluationTest : public ::testing::Test {
  protected:
   static Eigen::VectorXd at(double angle) { return Eigen::Vector2d(angle, 0.0); }
 
-  /// `num_settled` frames at the goal after frames far from it.
+  /// `num_settled` images at the goal, after images far from the goal.
   static States arriving(int num_settled, int num_frames = 40) {
     States states(num_frames, at(0.0));
     for (int i = num_frames - num_settled; i < num_frames; ++i) states[i] = at(kPi);
     return states;
   }
 
-  /// Of a run without torques.
+  /// Evaluates an episode without torques.
   Evaluation evaluated(const States& states) const {
     return evaluate(plant_, states, States(states.size(), Eigen::VectorXd::Zero(1)));
   }
@@ -41,7 +41,7 @@ class EvaluationTest : public ::testing::Test {
 TEST_F(EvaluationTest, SuccessTakesTheLastTenFramesAtTheGoal) {
   EXPECT_FALSE(evaluated(arriving(9)).success);
   EXPECT_TRUE(evaluated(arriving(10)).success);
-  EXPECT_TRUE(evaluated(arriving(9)).known);  // a failure is known, too
+  EXPECT_TRUE(evaluated(arriving(9)).known);  // failures are known results too
   States states(40, at(kPi));
   states.back() = at(kPi - 11.0 * kDegree);
   EXPECT_FALSE(evaluated(states).success);
@@ -52,7 +52,7 @@ TEST_F(EvaluationTest, StrictSuccessTakesTheLast25) {
   EXPECT_TRUE(evaluated(arriving(24)).success);
   EXPECT_FALSE(evaluated(arriving(24)).success_strict);
   EXPECT_TRUE(evaluated(arriving(25)).success_strict);
-  EXPECT_TRUE(evaluated(arriving(7, 7)).success_strict);  // all of a shorter run
+  EXPECT_TRUE(evaluated(arriving(7, 7)).success_strict);  // all images of a shorter episode
   EXPECT_FALSE(evaluated(arriving(6, 7)).success);
 }
 
@@ -75,7 +75,7 @@ TEST_F(EvaluationTest, WithoutGroundTruthNothingIsKnown) {
 
 TEST(EvaluationOfRewards, CountsTheStepsOfLostFramesAndNoMoreStepsThanARunHas) {
   testing::ToyPlant plant(testing::colourfulToy());
-  const std::vector<int> steps = {1, 3, 1, 2};  // from each frame to the next
+  const std::vector<int> steps = {1, 3, 1, 2};  // time steps between successive images
   States states, torques;
   std::vector<double> times;
   double expected = 0.0, time = 0.4;
@@ -136,7 +136,7 @@ TEST(Quantile, IsTheValueThatAFractionDoesNotExceed) {
 }
 
 TEST(WilsonInterval, HoldsTheRatesThatTheRunsDoNotSpeakAgainst) {
-  // The ends are where a rate p is 1.96 standard errors of p away from what was seen.
+  // At each end, p is 1.96 standard errors of p away from the observed rate.
   for (const int successes : {1, 7, 19}) {
     const auto interval = wilsonInterval(successes, 20);
     for (const double p : {interval.first, interval.second}) {

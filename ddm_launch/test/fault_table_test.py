@@ -1,4 +1,4 @@
-# Faults of each class come to what is expected of them.
+# One fault of each class has the expected result.
 # SPDX-License-Identifier: BSD-3-Clause
 from processes import call, find_program
 from run_files import read_rows

@@ -1,4 +1,4 @@
-# Figures: each is drawn from committed tables; the numbers behind them, and what they refuse.
+# Figures: each is drawn from committed tables. The tests check the numbers and the invalid inputs.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import shutil
@@ -19,7 +19,7 @@ RESULTS = os.path.join(PACKAGE, "results")
 PUBLISHED = os.path.join(RESULTS, "published", "success_rate.csv")
 HEADER = "seed,trial,frames,success,final_error\n"
 SWEEP = HEADER + "0,0,100,0,90\n0,1,200,1,2\n1,0,100,1,3\n1,1,200,1,1\n2,0,100,0,50\n3,0,100,1,4\n"
-# Of each figure, its words; paths are relative to the committed results.
+# Arguments of each figure. Paths are relative to the committed results.
 FIGURES = [
     (figure.main, "film_strip first_run --trial 3"),
     (figure.main, "learning_curve first_run"),
@@ -136,7 +136,8 @@ def test_what_a_film_expects_is_what_the_model_says_a_second_before(run):
     assert clip.title == "pendulum, after 60 images (12 s)"
     model = load(os.path.join(run, "trial_001", "model.ddm"))
     images, torques, motors = draw_evaluation(run, 1)
-    assert motors == ["torque_nm"] and clip.expected[:1 + steps] == (1 + steps) * [None]  # two images are needed, and a second
+    # each prediction starts from two images and looks one second ahead
+    assert motors == ["torque_nm"] and clip.expected[:1 + steps] == (1 + steps) * [None]
     then = now - steps
     ahead = model.roll_out(model.encode(images[then - 1:then + 1]), torques[then - 1:now])
     np.testing.assert_allclose(clip.expected[now], np.clip(255.0 * model.decode(ahead[-1:])[0], 0, 255))

@@ -1,4 +1,4 @@
-// Tests of the driver in one process: what a camera that loses frames does to a trial and its bag.
+// Tests of the in-process driver, in particular of trials and bags with lost images.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "in_process_driver.h"
 
@@ -19,7 +19,7 @@
 namespace ddm {
 namespace {
 
-/// A plant whose state is the number of its steps, and which has none beyond the last.
+/// A plant whose state is the number of its steps. The state after step `last` is infinite.
 testing::ToyPlant::Traits counter(int last) {
   testing::ToyPlant::Traits traits;
   traits.info.start = Eigen::VectorXd::Zero(1);
@@ -51,7 +51,7 @@ class InProcessDriverTest : public ::testing::Test {
     return readBag(request_.bag, configuration_.model.image.size, configuration_.model.data_set);
   }
 
-  /// Time steps from one frame to the next.
+  /// Number of time steps from one image to the next.
   int stepsAfter(const TrialOutcome& outcome, size_t frame) const {
     const double steps =
         (outcome.times[frame + 1] - outcome.times[frame]) / configuration_.plant_info.dt;
@@ -74,7 +74,7 @@ TEST_F(InProcessDriverTest, ThePlantStaysWhereTheLastFrameShowsItAsInLockStep) {
 TEST_F(InProcessDriverTest, ThePlantGoesOnUnderTheLastTorqueWhereAFrameIsLost) {
   configuration_.camera.drop_rate = 0.2;
   const TrialOutcome outcome = run();
-  ASSERT_EQ(outcome.states.size(), 40u);  // a trial counts what is seen
+  ASSERT_EQ(outcome.states.size(), 40u);  // num_steps counts images that were seen
   ASSERT_EQ(outcome.times.size(), 40u);
   ASSERT_EQ(outcome.torques.size(), 40u);
   EXPECT_EQ(outcome.times[0], 0.0);
@@ -93,7 +93,7 @@ TEST_F(InProcessDriverTest, ThePlantGoesOnUnderTheLastTorqueWhereAFrameIsLost) {
 TEST_F(InProcessDriverTest, NoPairOfTheBagStraddlesALostFrame) {
   configuration_.camera.drop_rate = 0.2;
   const TrialOutcome outcome = run();
-  std::vector<Eigen::Index> expected = {0};  // first frames of the segments
+  std::vector<Eigen::Index> expected = {0};  // first samples of the segments
   for (size_t t = 0; t + 1 < 40; ++t) {
     if (stepsAfter(outcome, t) > 1) expected.push_back(static_cast<Eigen::Index>(t) + 1);
   }
@@ -130,7 +130,8 @@ TEST_F(InProcessDriverTest, FramesAndGoalAreThoseOfTheCameraInThisRun) {
   }
 }
 
-/// A grey level for each place, so that frames tell where the cart is and goals where it shall be.
+/// The grey level depends on the position, so that images show the position and the goal of the
+/// cart.
 testing::ToyPlant::Traits wandering() {
   testing::ToyPlant::Traits traits = testing::colourfulToy();
   traits.draw = [](const Eigen::VectorXd& state) {
@@ -156,7 +157,7 @@ TEST_F(InProcessDriverTest, EachRunHasAGoalOfItsOwnInItsBagWhereThePlantDrawsOne
   EXPECT_EQ(goals.size(), 3u);
 }
 
-/// Keeps the goals that it is shown.
+/// Records the goals that it receives.
 class Onlooker : public Policy {
  public:
   void startTrial(const TrialId& /*id*/) override {}

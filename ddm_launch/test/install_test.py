@@ -1,4 +1,4 @@
-# The install space has everything and needs nothing else: it runs where sources, build and devel space are gone.
+# The install space is complete: it works after sources, build space and devel space have been hidden.
 # SPDX-License-Identifier: BSD-3-Clause
 import glob
 import os
@@ -18,7 +18,7 @@ LEFT_OUT = ["benchmark_kernels", "prediction_experiment"]  # programs of qa and 
 
 
 def cached(name):
-    """A value of the build's CMakeCache.txt; empty if it has none."""
+    """A value of the build's CMakeCache.txt; empty if the file has no such value."""
     with open(os.path.join(BUILD, "CMakeCache.txt")) as stream:
         found = re.search(r"^%s:\w+=(.*)$" % name, stream.read(), re.MULTILINE)
     return found.group(1) if found else ""
@@ -31,7 +31,7 @@ pytestmark = pytest.mark.skipif(bool(HINDRANCE), reason="THE INSTALL SPACE IS NO
 
 
 def programs_in(folder):
-    """Names of the programs in lib/PACKAGE of a space, but for tests."""
+    """Names of the programs in lib/PACKAGE of a space, without tests."""
     names = os.listdir(folder) if os.path.isdir(folder) else []
     return sorted(name for name in names if os.access(os.path.join(folder, name), os.X_OK)
                   and not re.search("_test$|_test_", name))
@@ -46,10 +46,10 @@ def install(tmp_path_factory):
 
 
 def run_installed(prefix, folder, *command):
-    """Output of a command after sourcing install/setup.bash in a new terminal."""
+    """Returns the output of a command after sourcing install/setup.bash in a new terminal."""
     terminal = {"PATH": "/usr/bin:/bin:/usr/sbin:/sbin", "HOME": folder, "ROS_HOME": folder + "/ros", "ROS_HOSTNAME": "localhost",
                 "PYTHONUNBUFFERED": "1"}
-    # a function, or setup.bash would take the command's words for its own
+    # A function without arguments sources setup.bash, which would otherwise parse the words of the command.
     source = "open_terminal() { . %s/setup.bash; }; open_terminal && exec \"$@\"" % prefix
     code, output = call(hiding(GONE) + ["bash", "-c", source, "bash"] + [str(word) for word in command],
                         environment=terminal, folder=folder)
@@ -71,10 +71,10 @@ def test_everything_but_qa_and_study_is_installed_and_names_no_other_folder(pref
     assert not {"qa", "fault_table", "study"} & set(programs_in(os.path.join(prefix, "lib", "ddm_launch")))
     for path in files_in(prefix):
         if path.endswith(("Config.cmake", "_setup_util.py")):
-            continue  # catkin's own: they name all workspaces that were sourced when this one was configured
+            continue  # files of catkin, which name all workspaces that were sourced at configuration
         with open(os.path.join(prefix, path), "rb") as stream:
             content = stream.read()
-        if b"\0" not in content[:4096]:  # a program may tell where its sources were, in a message
+        if b"\0" not in content[:4096]:  # messages in a program may contain the path of its source
             for folder in GONE:
                 assert not re.search(re.escape(folder).encode() + rb"(?![\w.-])", content), (path, folder)
 
@@ -93,7 +93,7 @@ def test_an_experiment_runs_in_one_process_and_with_the_nodes(prefix, tmp_path):
 
 
 def test_every_tool_shows_its_help(prefix, tmp_path):
-    nodes = set()  # only launch files start these
+    nodes = set()  # these programs are started only by launch files
     for path in glob.glob(os.path.join(CHECKOUT, "ddm_launch", "**", "*.launch"), recursive=True):
         with open(path) as stream:
             nodes.update(re.findall(r'type="(\w+)"', stream.read()))

@@ -1,4 +1,4 @@
-# Launch files with paths that mean something to a shell, to YAML or to roslaunch.
+# Launch files accept paths with characters that are special in a shell, in YAML or for roslaunch.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import subprocess
@@ -19,7 +19,7 @@ def test_launch_files_get_all_their_paths(tmp_path):
         (odd / name).write_text("")
 
     def parameters(launch, *arguments):
-        """What a launch file would set, and `configuration` read as YAML."""
+        """Returns (parameters that a launch file would set, content of the parameter `configuration`)."""
         values = yaml.safe_load(subprocess.check_output(["roslaunch", "--dump-params", "ddm_launch", launch, *arguments], env=home,
                                                         cwd=tmp_path))
         return values, yaml.safe_load(values["/configuration"])
@@ -28,7 +28,7 @@ def test_launch_files_get_all_their_paths(tmp_path):
                                 "config:=" + there + "more.yaml")
     assert blocks["experiment"]["runs"] == str(tmp_path / "010")
     assert (blocks["start"]["model"], blocks["start"]["bags"]) == (str(odd / "m.ddm"), [str(odd / "a.bag")])
-    assert values["/run_trial/actionlib_status_frequency"] == 5.0 and values["/use_sim_time"] is False  # as the file says
+    assert values["/run_trial/actionlib_status_frequency"] == 5.0 and values["/use_sim_time"] is False  # from the file
     _, blocks = parameters("robot.launch", "runs:=" + there + "run", "camera:=c", "goal:=" + there + "goal.png")
     assert (blocks["robot"]["goal_file"], blocks["experiment"]["runs"]) == (str(odd / "goal.png"), str(odd / "run"))
     values, _ = parameters("record.launch", "bag:=" + there + "a.bag", "model:=true")

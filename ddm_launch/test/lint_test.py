@@ -1,4 +1,4 @@
-# Rules that every source file keeps, and linters that find nothing: clang-format, catkin_lint, shellcheck, pyflakes, clang-tidy.
+# Rules for all source files, and linters without findings: clang-format, catkin_lint, shellcheck, pyflakes, clang-tidy.
 # SPDX-License-Identifier: BSD-3-Clause
 from concurrent.futures import ThreadPoolExecutor
 import glob
@@ -22,7 +22,7 @@ def read(path):
 
 
 def scripts(interpreter, suffix):
-    """All files that an interpreter runs, told by suffix or first line."""
+    """All files for an interpreter, recognised by suffix or first line."""
     return [path for path in FILES if path.endswith(suffix) or
             "." not in os.path.basename(path) and re.match("#!.*" + interpreter, read(path))]
 
@@ -30,13 +30,14 @@ def scripts(interpreter, suffix):
 BASH_FILES, PYTHON_FILES = scripts("bash", ".sh"), scripts("python3", ".py")
 CORES = ["ddm_sim", "ddm_model", "ddm_mpc"]
 INCLUDES = ["-I%s/include" % folder for folder in CORES + ["ddm_msgs/common"]] + ["-isystem/usr/include/eigen3"]
-# clang-tidy takes about ten seconds for a file: these, and those of the last commit, at most so many.
+# clang-tidy takes about ten seconds per file. It checks the files of ALGORITHM and those of the last commit, at most
+# MOST_TIDIED files.
 ALGORITHM, MOST_TIDIED = ("objective.cpp", "trainer.cpp", "planner.cpp", "controller.cpp"), 12
-# What could execute something from a file or a message.
+# Functions that could execute text of a file or message.
 UNSAFE_PYTHON = re.compile(r"\b(eval|exec|execvp)\(|\bpickle\b|\bos\.(system|popen)\b|shell=True|allow_pickle=True|"
                            r"yaml\.(unsafe_|full_)?load(_all)?\((?!.*Loader=(LOADER|yaml\.BaseLoader)\))")
 UNSAFE_CPP = re.compile(r"\b(system|popen|dlopen|exec[lv]p?e?)\(")
-MAY_EXECUTE = ("ddm_study/pages.py", "ddm_study/program.py")  # text of our pages; make
+MAY_EXECUTE = ("ddm_study/pages.py", "ddm_study/program.py")  # these execute text of the pages, and make
 
 
 def output_of(*command):
@@ -45,7 +46,7 @@ def output_of(*command):
 
 
 def needs(program, version=""):
-    """Linters of Debian 12 judge: other versions find other things."""
+    """Skips a test unless the linter of Debian 12 is installed, because other versions have other findings."""
     found = shutil.which(program) and output_of(program, "--version").stdout
     return pytest.mark.skipif(not found or version not in found, reason="%s %s is not installed" % (program, version))
 

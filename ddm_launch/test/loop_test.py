@@ -1,4 +1,4 @@
-# Experiments of the real nodes: files, terminal and bags, how they are interrupted, and launches that are refused.
+# Experiments with ROS nodes: files, terminal and bags, interruptions, and launches that are refused.
 # SPDX-License-Identifier: BSD-3-Clause
 import signal
 
@@ -15,7 +15,7 @@ def experiment(out, trials, *more):
 
 
 def assert_same_as_one_process(out, folder, trials):
-    """All files but bags, whose stamps are another simulated time, and what tells wall times."""
+    """All files are equal, except for wall times and for bags, whose stamps are another simulated time."""
     code, output = run_experiment("--preset", "debug", "--seed", 1, "--trials", trials, "--out", folder)
     assert code == 0, output
     names = [name for name in expected_files(trials) if not name.endswith((".bag", "config.yaml"))]
@@ -24,7 +24,8 @@ def assert_same_as_one_process(out, folder, trials):
 
 def test_all_files_of_the_contract_are_written_and_the_terminal_shows_each_trial(tmp_path):
     out = str(tmp_path / "out")
-    code, output = roslaunch(str(tmp_path), *experiment("out", TRIALS), folder=str(tmp_path))  # relative: to where it was called
+    # relative to the folder of the call
+    code, output = roslaunch(str(tmp_path), *experiment("out", TRIALS), folder=str(tmp_path))
     assert code == 0 and files_in(out) == expected_files(TRIALS), output
     assert read_yaml(out, "summary.yaml")["finished"] is True
     for k in range(TRIALS + 1):
@@ -54,7 +55,7 @@ def test_a_second_launch_is_refused_and_an_interrupted_experiment_goes_on_later(
     assert_same_as_one_process(out, str(tmp_path / "process"), finished)
 
 
-# resolve_test.py and configuration_test.cpp have more mistakes; here a launch shows one of each kind.
+# This test makes one mistake of each kind. resolve_test.py and configuration_test.cpp test more mistakes.
 @pytest.mark.parametrize("words, arguments, config", [
     (["unknown plant 'windmill'", "pendulum_gravity"], ["plant:=windmill"], ""),
     (["controller/timeot", "timeout"], [], "controller: {timeot: 1.0}\n"),

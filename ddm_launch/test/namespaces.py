@@ -1,4 +1,4 @@
-# Folders that are not there and machines that are not there, by Linux namespaces: nothing outlives the program.
+# Hides folders and simulates machines by Linux namespaces, which end with the program.
 # SPDX-License-Identifier: BSD-3-Clause
 import shutil
 import subprocess
@@ -9,30 +9,31 @@ HIDE = 'while [ "$1" != -- ]; do mount -t tmpfs none "$1" || exit; shift; done; 
 
 
 def hiding(folders):
-    """Words before a command for which these folders are empty."""
+    """Words to put before a command, which then sees these folders as empty."""
     return ["unshare", "--mount", "sh", "-c", HIDE, "sh"] + list(folders) + ["--"]
 
 
 def why_not(*kinds):
-    """Why this process cannot make namespaces of these kinds (mount, net), or an empty text."""
+    """The reason why this process cannot make namespaces of these kinds (mount, net); empty if it can."""
     done = subprocess.run(["unshare"] + ["--" + kind for kind in kinds] + ["ip", "link"],
                           stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, universal_newlines=True)
     return "" if done.returncode == 0 else "no namespaces (%s): run it as root" % done.stderr.strip()
 
 
 def why_no_nft():
-    """Why this process cannot filter the packets of its namespaces, or an empty text."""
+    """The reason why this process cannot filter packets in its namespaces; empty if it can."""
     return why_not("net", "mount") or ("" if shutil.which("nft") else "no program nft: install nftables")
 
 
 def nft_rule(peers=False):
-    """The rule for nftables as doc/reference/network.md prints it. peers: with the line for several machines."""
+    """The nftables rule of doc/reference/network.md. peers: include the line for several machines."""
     rule, = pages.blocks(pages.read("doc/reference/network.md"), "nft")
     return rule.replace("# ip saddr", "ip saddr") if peers else rule
 
 
 class Network:
-    """Machines with an address of their own on one wire, and with some folders that no other machine sees. A context."""
+    """A context manager that simulates machines on one wire. Each machine has an address and some folders of its
+    own."""
 
     def __init__(self):
         self._holders = []
@@ -41,9 +42,9 @@ class Network:
         self._run(self._hub, "ip", "link", "set", "wire", "up")
 
     def addMachine(self, own_folders):
-        """Returns (its address, words before a command that runs there)."""
+        """Returns (address of the new machine, words to put before a command that runs there)."""
         holder = self._hold(["unshare", "--net"] + hiding(own_folders))
-        number = len(self._holders) - 1  # without the hub
+        number = len(self._holders) - 1  # the hub is not counted
         address, plug = "10.0.0.%d" % number, "plug%d" % number
         self._run(self._hub, "ip", "link", "add", plug, "type", "veth", "peer", "name", "eth0", "netns",
                   str(holder.pid))
@@ -54,7 +55,7 @@ class Network:
         return address, self._enter(holder)
 
     def load(self, enter, rules):
-        """enter: words before a command on that machine. rules: text for nft."""
+        """Loads rules into nftables. enter: words to put before a command on that machine. rules: text for nft."""
         subprocess.run(enter + ["nft", "-f", "-"], input=rules, universal_newlines=True, check=True)
 
     def __enter__(self):
@@ -67,7 +68,7 @@ class Network:
             holder.stdout.close()
 
     def _hold(self, words):
-        """A process whose namespaces live until it ends, which it does with this one."""
+        """Starts a process that keeps its namespaces alive. The process ends with this one."""
         holder = subprocess.Popen(words + ["sh", "-c", "echo ready; exec cat"], stdin=subprocess.PIPE,
                                   stdout=subprocess.PIPE)
         self._holders.append(holder)

@@ -1,4 +1,4 @@
-# new_plant: its plant file works as it is, in every program and from every folder; what cannot be a plant is refused.
+# new_plant: its plant file works in every program and from every folder, and unsuitable model files are refused.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import struct
@@ -52,14 +52,14 @@ class Maker:
         return call([find_program("new_plant", "ddm_sim"), *arguments], folder=str(self.folder))
 
     def make(self, model, text, *options):
-        """(block `plant` of the plant file, what was printed)."""
+        """Returns (block `plant` of the plant file, output)."""
         (self.folder / model).write_text(text)
         code, output = self.call(model, "--out", "my_plant.yaml", *options)
         assert code == 0, output
         return read_yaml(self.plant)["plant"], output
 
     def simulate(self, header, row):
-        """The rows of a trajectory, simulated in another folder."""
+        """Returns the rows of a trajectory that is simulated in another folder."""
         (self.folder / "torques.csv").write_text("%s\n%s\n%s\n" % (header, row, row))
         with open(self.folder / "torques.csv") as torques:
             text = subprocess.check_output([find_program("simulate", "ddm_sim"), "--plant", "../my_plant.yaml"],
@@ -112,12 +112,13 @@ def test_an_mjcf_file_with_two_motors_is_seen_from_above(maker):
 
 def test_effort_limits_and_motors_that_the_file_does_not_give_are_estimated_or_asked_for(maker):
     plant, output = maker.make("swing.urdf", swing(0.0))
-    assert plant["max_torque"][0] > 0.5 * 9.81 * 0.2  # lifts the rod
+    assert plant["max_torque"][0] > 0.5 * 9.81 * 0.2  # enough to lift the rod
     assert "plant/max_torque" in output and "SET: " in maker.plant.read_text().partition("max_torque: ")[0]
     plant, output = maker.make("swing.urdf", swing(0.0), "--max-torque", "0.7", "--force")
     assert plant["max_torque"] == [0.7]
     os.remove(maker.plant)
-    maker.assert_refused(2, ["my_plant.png", "--force"], "swing.urdf", "--out", "my_plant.yaml")  # nothing is replaced
+    # existing files are not replaced
+    maker.assert_refused(2, ["my_plant.png", "--force"], "swing.urdf", "--out", "my_plant.yaml")
     (maker.folder / "arm.urdf").write_text(arm())
     maker.assert_refused(1, ["--motors", "shoulder,elbow"], "arm.urdf", "--out", "my_plant.yaml", "--force")
     maker.assert_refused(1, ["elbo", "elbow?"], "arm.urdf", "--out", "my_plant.yaml", "--motors", "elbo", "--force")

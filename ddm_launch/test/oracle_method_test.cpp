@@ -1,4 +1,4 @@
-// Tests of the oracle: its cost, its gradient, and that it steers the plant it knows.
+// Tests of the oracle: its cost, its gradient, and its control of the true plant.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "oracle_method.h"
 
@@ -27,7 +27,7 @@ std::unique_ptr<Plant> makePlantOf(const std::string& type) {
   return makePlant(*testing::plantOf("{type: " + type + "}"));
 }
 
-/// J(U) as a function of a flat vector of torques.
+/// J(U) as a function of the flattened plan.
 DifferentiableFunction costFunction(PlanCost* cost) {
   return [cost](const Eigen::VectorXd& u, Eigen::VectorXd* gradient) {
     const Eigen::Map<const Eigen::MatrixXd> U(u.data(), cost->torqueDim(), cost->horizon());

@@ -1,4 +1,4 @@
-# The example of a plant from outside: built in a workspace of its own on top of ours, it works in both drivers.
+# The example of a plant in another package: it is built in a workspace on top of this one and works with both drivers.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import subprocess
@@ -16,7 +16,7 @@ PLANT_KEYS = ["type", "max_torque", "dt", "start_std", "picture_size", "mass", "
 
 @pytest.fixture(name="example", scope="module", autouse=True)
 def build(tmp_path_factory):
-    """Builds the example as its page says, and sources its workspace."""
+    """Builds the example as its page describes, and sources its workspace."""
     workspace = tmp_path_factory.mktemp("ws")
     (workspace / "src").mkdir()
     (workspace / "src" / "ddm_cart").symlink_to(os.path.join(CHECKOUT, "examples", "ddm_cart"))
@@ -38,7 +38,7 @@ def test_both_drivers_and_sweep_run_it_with_its_own_keys_and_columns(tmp_path):
     assert header == ["step", "force_n", "exploratory"] and any(abs(float(row[1])) > 0.0 for row in rows)
     header, *rows = read_rows(process, "trial_000", "trajectory.csv")
     assert header == ["step", "time_s", "x_m", "rate_m_per_s"]
-    assert len({row[2] for row in rows}) > 20  # it moves
+    assert len({row[2] for row in rows}) > 20  # the cart moves
     config = read_yaml(process, "config.yaml")
     assert list(config["plant"]) == PLANT_KEYS and config["goal"]["error_unit"] == "m"
     assert (config["plant"]["type"], config["plant"]["friction"]) == ("ddm_cart/Cart", 2.0)
@@ -52,7 +52,7 @@ def test_simulate_knows_the_plant(tmp_path):
         text = subprocess.check_output([find_program("simulate", "ddm_sim"), "--plant", "ddm_cart/cart", "--start", "0.1,0"],
                                        stdin=stream, universal_newlines=True)
     assert text.startswith("step,time_s,x_m,rate_m_per_s\n0,0,0.1")
-    # a constant force of 2 N: x = 0.1 + t - (1 - exp(-2 t)) / 2
+    # For a constant force of 2 N, x = 0.1 + t - (1 - exp(-2 t)) / 2.
     assert float(text.splitlines()[3].split(",")[2]) == pytest.approx(0.1 + 0.4 - (1.0 - 0.449328964) / 2.0, abs=1e-7)
 
 

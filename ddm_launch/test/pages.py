@@ -1,4 +1,4 @@
-# The pages of this repository as a reader meets them: headings, links and commands.
+# Reads the pages of this repository: headings, links and commands.
 # SPDX-License-Identifier: BSD-3-Clause
 import glob
 import os
@@ -24,7 +24,7 @@ def blocks(text, language):
 
 
 def anchors(text):
-    """What a link to a heading of this page may be, as hosts of repositories make it of the heading."""
+    """Anchors of all headings of a page, as repository hosts compute them."""
     found = []
     for heading in re.findall(r"^#+ (.*)$", BLOCK.sub("", text), re.MULTILINE):
         plain = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", heading).replace("`", "")
@@ -34,7 +34,7 @@ def anchors(text):
 
 
 def links(page):
-    """(path relative to the checkout, anchor or "") of each link of a page to a file or heading of this repository."""
+    """(path relative to the checkout, anchor or "") of each link to a file or heading of this repository."""
     found = []
     for link in re.findall(r"\]\(([^()\s]+)\)", BLOCK.sub("", read(page))):
         path, _, anchor = link.partition("#")

@@ -1,4 +1,4 @@
-# Pages: links lead somewhere, tables have the numbers of the committed results, and the first commands run.
+# Pages: links are valid, tables contain the numbers of the committed results, and the first commands work.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import re
@@ -10,7 +10,7 @@ import rooms  # noqa: F401
 from ddm_study.pages import Functions, filled, marked_pages
 from processes import call, free_port, has_mujoco, line_by_line
 
-LIMIT_S = 300.0  # for the commands of a page
+LIMIT_S = 300.0  # time limit for the commands of a page
 
 
 def test_links_lead_to_files_and_headings_that_are_there():
@@ -35,7 +35,7 @@ def test_programs_and_launch_files_that_pages_start_are_there():
     for page in pages.page_paths():
         for package, name in re.findall(r"\bros(?:run|launch) (?:--wait )?(ddm_\w+) (\w[\w.]*)", pages.read(page)):
             find = roslib.packages.find_resource if name.endswith(".launch") else roslib.packages.find_node
-            if package != "ddm_cart" and not find(package, name):  # the example is no part of this workspace
+            if package != "ddm_cart" and not find(package, name):  # the example is in another workspace
                 missing.add(name)
     assert missing == (set() if has_mujoco() else {"new_plant"})
 
@@ -64,7 +64,7 @@ def test_the_commands_of_the_first_pages_run_as_they_are(tmp_path):
         (tmp_path / "ddm_ws" / space / "setup.bash").write_text(". %s/setup.bash\n" % prefix)
     for page in ("doc/install.md", "doc/first_run.md"):
         commands = "\n".join(pages.blocks(pages.read(page), "bash"))
-        commands = commands.replace(" rviz:=true", "")  # as the page says for a machine without a screen
+        commands = commands.replace(" rviz:=true", "")  # the page describes this for machines without a screen
         environment = dict(line_by_line(), HOME=str(tmp_path), ROS_HOME=str(tmp_path / "ros"),
                            ROS_MASTER_URI="http://localhost:%d" % free_port())
         code, output = call(["bash", "-c", "set -e\n" + commands], LIMIT_S, environment=environment, folder=str(tmp_path))

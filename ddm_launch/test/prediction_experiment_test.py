@@ -1,4 +1,4 @@
-# prediction_experiment and feature_space: their files, what a seed fixes, what they refuse.
+# prediction_experiment and feature_space: their files, repeatability with a seed, and invalid inputs.
 # SPDX-License-Identifier: BSD-3-Clause
 import csv
 import os
@@ -16,7 +16,7 @@ def read_dicts(*path):
 
 
 def predict(*arguments, seed=3):
-    """(exit code, output)"""
+    """Returns (exit code, output)."""
     return call([find_program("prediction_experiment"), "--preset", "debug", "--plant", "moving_tile", "--seed", seed, "--set",
                  "training/num_starts=1"] + list(arguments))
 
@@ -30,7 +30,7 @@ def make_reference(tmp_path_factory):
 
 
 def explained_by_a_quadratic_map(frames):
-    """R^2 of the held-out positions, given a quadratic map of the features that is fitted to the training samples."""
+    """R^2 of the held-out positions for a quadratic map of the features, fitted to the training samples."""
     z1, z2, x, y = (np.array([float(frame[name]) for frame in frames]) for name in ("z_1", "z_2", "x_px", "y_px"))
     inputs = np.stack([np.ones_like(z1), z1, z2, z1 * z1, z1 * z2, z2 * z2], axis=1)
     positions = np.stack([x, y], axis=1)
@@ -48,14 +48,15 @@ def test_the_files_have_a_row_for_each_number_of_steps_and_each_frame(reference)
     assert list(rows[0]) == ["seed", "steps", "num_predictions", "rmse", "rmse_repeat", "position_r2", "v_r", "v_p",
                              "train_s"]
     assert [row["steps"] for row in rows] == [str(k) for k in range(1, 9)]
-    assert {row["num_predictions"] for row in rows} == {"91"}  # 100 images, one before, eight after
+    # 100 images, of which a prediction needs one before and eight after
+    assert {row["num_predictions"] for row in rows} == {"91"}
     repeat = [float(row["rmse_repeat"]) for row in rows]
-    assert repeat[:3] == sorted(repeat[:3])  # the tile moves away from where it was
+    assert repeat[:3] == sorted(repeat[:3])  # the tile moves away from its first position
     assert all(0.0 < float(row["rmse"]) < 1.0 for row in rows)
     frames = read_dicts(reference, "features.csv")
     assert list(frames[0]) == ["frame", "set", "x_px", "y_px", "z_1", "z_2"]
     assert [row["set"] for row in frames] == ["training"] * 501 + ["held_out"] * 100
-    assert all(abs(float(after[name]) - float(before[name])) <= 5.0 + 1e-9  # as it is pushed
+    assert all(abs(float(after[name]) - float(before[name])) <= 5.0 + 1e-9  # the largest step of the tile
                for before, after in zip(frames, frames[1:]) for name in ("x_px", "y_px"))
     assert [float(row["position_r2"]) for row in rows] == pytest.approx([explained_by_a_quadratic_map(frames)] * 8)
 
@@ -105,7 +106,7 @@ def test_the_folder_of_another_experiment_is_refused(reference):
 
 def test_feature_space_tells_experience_current_goal_and_plan_and_refuses_other_runs(tmp_path):
     run, out = str(tmp_path / "run"), str(tmp_path / "feature_space.csv")
-    config = tmp_path / "nuisances.yaml"  # it sees what the camera of the run saw
+    config = tmp_path / "nuisances.yaml"  # both programs see the same disturbed images
     config.write_text("camera: {noise_std: 0.1, brightness_drift: 0.2, clutter: 0.6, delay: 1, drop_rate: 0.1}\n")
     code, output = run_experiment("--preset", "debug", "--seed", 1, "--trials", 1, "--config", str(config), "--out", run)
     assert code == 0, output
@@ -117,7 +118,7 @@ def test_feature_space_tells_experience_current_goal_and_plan_and_refuses_other_
     assert code == 0, output
     rows = read_rows(out)
     assert rows[0] == ["kind", "step", "z_1", "z_2"]
-    kinds = ["experience"] * 60 + ["current", "goal"] + ["plan"] * 5  # two trials of 30, K = 5
+    kinds = ["experience"] * 60 + ["current", "goal"] + ["plan"] * 5  # two trials of 30 samples, K = 5
     assert [row[0] for row in rows[1:]] == kinds
     assert [row[1] for row in rows[-5:]] == ["3", "4", "5", "6", "7"]
     for words, code, part in ((("--trial", 1, "--step", 30), 1, "30 steps"), (("--trial", 1), 2, "--step"),

@@ -1,4 +1,4 @@
-# Runs the programs of a workspace as a user would; every wait has a limit.
+# Runs the programs of a workspace as a user would, with time limits.
 # SPDX-License-Identifier: BSD-3-Clause
 import contextlib
 import io
@@ -7,7 +7,7 @@ import rooms  # noqa: F401
 from ddm_launch.command import find_program
 from ddm_qa.processes import Process, free_port, line_by_line, start_roslaunch  # noqa: F401
 
-LIMIT_S = 150.0  # of a program that takes a few seconds on a machine that has nothing else to do
+LIMIT_S = 150.0  # time limit on a busy machine for a program that takes a few seconds on an idle one
 
 
 def call(command, limit_s=LIMIT_S, **kwargs):
@@ -17,7 +17,7 @@ def call(command, limit_s=LIMIT_S, **kwargs):
 
 
 def has_mujoco():
-    """Whether ddm_sim was built with MuJoCo, which some systems do not have."""
+    """Whether ddm_sim was built with MuJoCo, which is not available on all systems."""
     code, output = call([find_program("simulate", "ddm_sim"), "--plant", "mujoco_pendulum", "--describe"])
     assert code == 0 or "libmujoco-dev" in output, output
     return code == 0

@@ -1,4 +1,4 @@
-// Tests of the progress on the terminal: what it says, and that files stay free of escape codes.
+// Tests of the progress on the terminal: its text, and that files contain no escape codes.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "progress.h"
 
@@ -16,7 +16,8 @@ using testing::toyRow;
 
 class ProgressTest : public ::testing::Test {
  protected:
-  /// Two trials, the second a success, and the summary.
+  /// The text of an experiment with two trials, of which the second is a success, and of its
+  /// summary.
   std::string textOf(bool live) {
     std::ostringstream out;
     Progress progress(&out, live, /*num_trials=*/1, "px");

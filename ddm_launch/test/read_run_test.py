@@ -1,4 +1,4 @@
-# A run folder in pandas: the README's lines, every step of every episode, and folders that are none.
+# Reading run folders with pandas: the README's example, every step of every episode, and invalid folders.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import re

@@ -1,11 +1,11 @@
-# Reading never writes: a finished run keeps every byte, whatever reads it.
+# Programs that read a finished experiment do not change any byte of it.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 
 from processes import call, find_program, roslaunch, run_experiment
 from run_files import changes, fingerprint
 
-LIMIT_S = 240.0  # of a program on a machine that has much else to do
+LIMIT_S = 240.0  # time limit of a program on a busy machine
 
 
 def test_what_reads_a_run_leaves_it_as_it_is(tmp_path):

@@ -1,4 +1,4 @@
-# record.launch, train_from_bags and control.launch: from bags to a model that drives, without an experiment.
+# record.launch, train_from_bags and control.launch: a model is trained from bags and controls the plant.
 # SPDX-License-Identifier: BSD-3-Clause
 import re
 import signal
@@ -26,7 +26,8 @@ def assert_is_trial(bag):
 
 def test_bags_become_a_model_that_drives_the_plant_and_explores(master, tmp_path):
     bag, plain, model, explored = (tmp_path / name for name in ("random.bag", "plain.bag", "model.ddm", "explored.bag"))
-    # by trial_recorder and by plain rosbag at once, on a master that is there before the launch: so nothing is missed
+    # trial_recorder and plain rosbag record at the same time. The master runs before the launch, so that rosbag misses
+    # nothing.
     with Process([find_program("record", "rosbag"), "-O", plain, "/camera/image_raw", "/torque", "/goal_image"]) as recorder:
         recorder.waitForText("Subscribing to /goal_image", 120.0)
         _, output = roslaunch(str(tmp_path), "record.launch", *SHORT, "seed:=1", "bag:=%s" % bag, port=0)
@@ -45,7 +46,7 @@ def test_bags_become_a_model_that_drives_the_plant_and_explores(master, tmp_path
 
     _, output = roslaunch(str(tmp_path), "control.launch", *SHORT, "model:=%s" % model)
     assert re.search(r"final error \d+\.\d+ deg: .*reached", output) and "%d torques" % STEPS in output, output
-    # with a folder that may be relative
+    # The path of the bag may be relative.
     _, output = roslaunch(str(tmp_path), "record.launch", *SHORT, "epsilon:=0.5", "bag:=explored.bag", "model:=%s" % model,
                           folder=str(tmp_path))
     assert "recorded: %s" % explored in output

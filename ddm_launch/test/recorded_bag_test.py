@@ -1,4 +1,4 @@
-# A bag of a JPEG camera of 30 Hz and torques of 50 Hz: its 300 frames train a model that reaches the goal.
+# Trains a model from a bag with JPEG images at 30 Hz and torques at 50 Hz: 300 samples suffice to reach the goal.
 # SPDX-License-Identifier: BSD-3-Clause
 import io
 import os
@@ -25,7 +25,7 @@ NAMES = ["--image-topic", IMAGE_TOPIC, "--torque-topic", TORQUE_TOPIC, "--dt", s
 
 
 def simulate(folder, torques, *options):
-    """JPEG files of a simulated pendulum at the camera's rate, one for each torque."""
+    """JPEG files of a simulated pendulum at the rate of the camera, one per torque."""
     folder.mkdir()
     (folder / "camera.yaml").write_text("plant: {dt: %.17g, picture_size: 102}\n" % (1.0 / CAMERA_HZ))
     (folder / "torques.csv").write_text("torque_nm\n" + "".join("%r\n" % torque for torque in torques))
@@ -41,7 +41,7 @@ def simulate(folder, torques, *options):
 
 
 def record(folder, path):
-    """A bag of random torques, held for a while each, whose messages arrive a few milliseconds after they were sent."""
+    """Records random torques, each held for a while. Messages arrive a few milliseconds after they were sent."""
     rng = random.Random(1)
     num_images, held = NUM_FRAMES * round(DT * CAMERA_HZ) + 1, round(HELD_S * CAMERA_HZ)
     changes = [rng.uniform(-6.0, 6.0) for _ in range(num_images // held + 1)]

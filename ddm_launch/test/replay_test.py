@@ -1,4 +1,4 @@
-# replay.launch: a bag goes through mpc_node, and no motor can move.
+# replay.launch: mpc_node plans on the images of a bag, and no motor can move.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import threading
@@ -20,7 +20,7 @@ STEPS = 30
 
 @pytest.fixture(name="trial", scope="module")
 def make_trial(master, tmp_path_factory):
-    """(bag, model) of a trial."""
+    """Returns (bag, model) of a trial."""
     run = str(tmp_path_factory.mktemp("trial") / "run")
     code, output = run_experiment("--preset", "debug", "--seed", 1, "--trials", 0, "--out", run)
     assert code == 0, output
@@ -28,7 +28,7 @@ def make_trial(master, tmp_path_factory):
 
 
 def replay(folder, *arguments):
-    """Output of replay.launch, and the publishers of all topics while its nodes answered."""
+    """Returns the output of replay.launch, and the publishers of all topics while its nodes ran."""
     publishers = {}
     with start_roslaunch(str(folder), "replay.launch", "preset:=debug", *arguments, port=0) as launch:
         while launch.isRunning() and not any("mpc_node" in nodes for nodes in publishers.get("/plan", [])):
@@ -65,7 +65,7 @@ def test_proposals_come_for_each_frame_and_nothing_where_motors_listen(trial, tm
 def test_the_zero_of_a_last_image_that_is_refused_is_no_proposal(trial, tmp_path):
     bag, out = str(tmp_path / "one.bag"), str(tmp_path / "torques.csv")
     with rosbag.Bag(trial[0]) as whole, rosbag.Bag(bag, "w") as one:
-        for wanted in ("camera/image_raw", "torque"):  # of the first frame, which is the last here
+        for wanted in ("camera/image_raw", "torque"):  # messages of the first image, which is also the last one here
             one.write(*next(whole.read_messages([wanted])))
     camera = rospy.Publisher("camera/image_raw", Image, queue_size=1)  # mpc_node refuses images of two publishers
     output, _ = replay(tmp_path, "bag:=" + bag, "model:=" + trial[1], "out:=" + out)

@@ -1,4 +1,4 @@
-// Tests of how a configuration comes about: which layer wins, what a saved one brings back.
+// Tests of resolve(): which layer overrides which, and how a saved configuration is used.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "resolution.h"
 
@@ -18,7 +18,7 @@ using testing::writeText;
 
 class Resolution : public ::testing::Test {
  protected:
-  /// The path of a new file.
+  /// Writes a file and returns its path.
   std::string file(const std::string& name, const std::string& text) const {
     writeText(folder_.file(name), text);
     return folder_.file(name);
@@ -33,7 +33,7 @@ class Resolution : public ::testing::Test {
     return all.plant->block()["gravity"].as<double>();
   }
 
-  /// A file as experiments leave it, of what has been given so far.
+  /// Writes the current configuration as experiments save it, and returns the path.
   std::string saved() const {
     return file("config.yaml", "version: 0.1.0 (test)\n" + YAML::Dump(toYaml(read())) + "\n");
   }
@@ -49,7 +49,8 @@ TEST_F(Resolution, WithoutArgumentsGivesTheDefaults) {
 }
 
 TEST_F(Resolution, LaterLayersWinKeyByKey) {
-  // pilco_state: trial/num_steps 125, mpc/epsilon 0; noise: camera/noise_std 0.1
+  // pilco_state sets trial/num_steps to 125 and mpc/epsilon to 0; noise sets camera/noise_std to
+  // 0.1.
   given_.set("experiment/method", std::string("pilco_state"));
   given_.set("experiment/plant", std::string("pendulum_gravity"));
   EXPECT_EQ(read().trial.num_steps, 125);
@@ -71,8 +72,8 @@ TEST_F(Resolution, AFileNamesPresetPlantAndMethodWhereNoArgumentDoes) {
       file("names.yaml", "experiment: {preset: debug, plant: moving_tile, method: pilco_pca}\n")};
   Configuration all = read();
   EXPECT_EQ(all.plant->type(), "moving_tile");
-  EXPECT_EQ(all.model.model.encoder_widths, std::vector<int>{6});  // of preset debug
-  EXPECT_EQ(all.trial.num_steps, 125);                             // of the method
+  EXPECT_EQ(all.model.model.encoder_widths, std::vector<int>{6});  // from preset debug
+  EXPECT_EQ(all.trial.num_steps, 125);                             // from the method
   given_.set("experiment/plant", std::string("pendulum"));
   all = read();
   EXPECT_EQ(all.plant->type(), "pendulum");
@@ -111,7 +112,7 @@ TEST_F(Resolution, PlansTakeHalfATimeStepInRealTimeUnlessAnythingSaysOtherwise) 
   EXPECT_EQ(read().mpc.time_budget, 0.04);
 }
 
-/// model/max_torque, mpc/max_torque and controller/torque_dim
+/// The values of model/max_torque, mpc/max_torque and controller/torque_dim as YAML.
 std::vector<std::string> learnersMotors(const Arguments& given) {
   const YAML::Node blocks = resolve(given).blocks;
   std::vector<std::string> out;

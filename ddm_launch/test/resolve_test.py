@@ -1,4 +1,4 @@
-# resolve: what the launch files take their configuration from. resolution_test.cpp tests how layers win over each other.
+# resolve, which computes the configuration of launch files. resolution_test.cpp tests the order of the layers.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 
@@ -10,7 +10,7 @@ from processes import call, find_program, has_mujoco
 
 
 class Resolve:
-    """Calls resolve in a folder, which is the home folder too."""
+    """Calls resolve in a folder, which is also the home folder."""
 
     def __init__(self, folder):
         self.folder = folder
@@ -28,7 +28,7 @@ class Resolve:
                     environment=dict(os.environ, HOME=str(self.folder)))
 
     def __call__(self, *arguments):
-        """What is printed, read as YAML."""
+        """Returns the output as YAML."""
         code, output = self.run(*arguments)
         assert code == 0, output
         return yaml.safe_load(output)
@@ -43,10 +43,11 @@ def test_values_win_over_files_and_an_option_with_an_empty_value_counts_as_not_g
     resolve.write("more.yaml", "experiment: {seed: 3, trials: 4}\nsim: {lockstep: false}\n")
     blocks = resolve("--preset", "debug", "--config", "more.yaml", "--set", "experiment/trials=5")
     assert [blocks["experiment"][key] for key in ("preset", "seed")] == ["debug", 3]
-    assert int(blocks["experiment"]["trials"]) == 5 and blocks["trial"]["num_steps"] == 30  # of the preset
+    # num_steps is that of the preset
+    assert int(blocks["experiment"]["trials"]) == 5 and blocks["trial"]["num_steps"] == 30
     assert resolve("--preset", "", "--plant", "", "--set", "experiment/seed=", "--crop", "", "--model", "", "--bags",
                    "--config", "") == resolve()
-    for key, values in (("sim/lockstep", [True, False]), ("status_frequency", [0.1, 5.0])):  # rare in simulated time
+    for key, values in (("sim/lockstep", [True, False]), ("status_frequency", [0.1, 5.0])):  # low in simulated time
         assert [resolve("--print", key, *more) for more in ([], ["--config", "more.yaml"])] == values
     model = resolve("--set", "model/encoder_widths=[30, 12]", "--set", "model/max_torque=[2.5]")["model"]
     assert (model["encoder_widths"], model["max_torque"]) == ([30, 12], [2.5])
@@ -86,7 +87,7 @@ def test_paths_start_at_the_folder_of_their_file_and_those_of_arguments_where_it
             (["--plant", "plants/robot.yaml", "--set", "robot/goal_file=goal.png"], "robot", "goal_file", "goal.png"),
             (["--config", "more/start.yaml"], "start", "bags", ["more/a.bag"]),
             (["--bags", "a.bag", "/b.bag"], "start", "bags", ["a.bag", "/b.bag"]),
-            # bags may be one text
+            # Several bags may be given in one text.
             (["--bags", "a b.bag"], "start", "bags", ["a b.bag"]), (["--bags", "it's.bag  c.bag"], "start", "bags", ["it's.bag", "c.bag"]),
             (["--bags", "'no such.bag' \"it's.bag\""], "start", "bags", ["no such.bag", "it's.bag"]),
             (["--bags", "~/c.bag x.bag"], "start", "bags", ["c.bag", "x.bag"])):

@@ -1,4 +1,4 @@
-# Whole experiments on a robot: robot_check.launch, stopped and resumed, and the rehearsal of the tutorial.
+# Complete experiments on a simulated robot: stopped and resumed robot_check.launch, and the rehearsal of the tutorial.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import time
@@ -18,7 +18,7 @@ LIMIT_S = 120.0
 
 
 def test_an_experiment_on_a_robot_is_stopped_and_resumed_with_another_crop(master, tmp_path):
-    """As the tutorial says: crop and goal_distance are chosen by looking, until the first trial is finished."""
+    """The user tunes crop and goal_distance until the first trial is finished, as the tutorial describes."""
     out = str(tmp_path / "out")
     arguments = ["robot_check.launch", "preset:=debug", "trials:=0", "dt:=%g" % DT, "load:=false", "runs:=" + out]
     with start_roslaunch(str(tmp_path), *arguments, "crop:=10,10,180,180", "goal_distance:=0.5", port=0) as launch:
@@ -31,13 +31,14 @@ def test_an_experiment_on_a_robot_is_stopped_and_resumed_with_another_crop(maste
     assert files_in(out) == sorted(
         [".trials.crc32", "config.yaml", "robot_check.yaml", "summary.yaml", "trials.csv", "evaluation_000/goal_distance.csv",
          "evaluation_000/torques.csv", "evaluation_000/trial.bag", "trial_000/model.ddm", "trial_000/torques.csv",
-         "trial_000/training.yaml", "trial_000/trial.bag", "trial_000/trial.1.bag.active"]), output  # of the stopped trial
+         # bag of the stopped trial
+         "trial_000/training.yaml", "trial_000/trial.bag", "trial_000/trial.1.bag.active"]), output
     config = read_yaml(out, "config.yaml")
     assert (config["evaluation"]["goal_distance"], config["robot"]["crop"][0]) == (0.3, 5)
     bag = os.path.join(out, "trial_000", "trial.bag")
     stamps = read_bag(bag)
     assert set(stamps["torque"]) <= set(stamps["camera/image_raw"]) and len(stamps["goal_image"]) == 1
-    assert STEPS // 2 <= len(stamps["torque"]) <= STEPS  # all in time where nothing else runs
+    assert STEPS // 2 <= len(stamps["torque"]) <= STEPS  # all torques are in time on an idle machine
     steps = sorted(1e-9 * (after - before) for before, after in zip(stamps["torque"], stamps["torque"][1:]))
     assert abs(steps[len(steps) // 2] - DT) < 0.3 * DT
     with rosbag.Bag(bag) as messages:
@@ -45,7 +46,7 @@ def test_an_experiment_on_a_robot_is_stopped_and_resumed_with_another_crop(maste
     assert (image.width, image.height, image.encoding) == (51, 51, "mono8")
     assert len(read_rows(out, "evaluation_000", "goal_distance.csv")) == 1 + STEPS
     row = read_rows(out, "trials.csv")[1]
-    assert row[3] in ("0", "1") and row[5] == ""  # judged without ground truth
+    assert row[3] in ("0", "1") and row[5] == ""  # success is known without ground truth
     check = read_yaml(out, "robot_check.yaml")
     assert check["frames"] == 2 * STEPS and [row["trial"] for row in check["evaluations"]] == [0]
     assert check["latency_ms"]["median"] < 1e3 * DT and check["deadline_misses"] < STEPS
@@ -57,7 +58,7 @@ def test_an_experiment_on_a_robot_is_stopped_and_resumed_with_another_crop(maste
 
 
 def test_a_rehearsal_runs_to_its_end_with_a_listener_in_the_place_of_the_motor(master, tmp_path):
-    """Runs the rehearsal of the tutorial, with the motors enabled, and replays the bag that it recorded."""
+    """Runs the rehearsal of the tutorial with enabled motors, and replays the recorded bag."""
     out, config = str(tmp_path / "out"), tmp_path / "my_robot.yaml"
     config.write_text("robot: {max_torque: 2.0, dt: %g}\n" % DT)
     rospy.Subscriber("/rehearsal", Float64, lambda _: None)
@@ -76,7 +77,7 @@ def test_a_rehearsal_runs_to_its_end_with_a_listener_in_the_place_of_the_motor(m
         assert dict(publishers)["/rehearsal"] == ["/robot_node"]
         assert [name for name, _ in publishers if name.endswith("effort_command")] == []
         deadline = time.monotonic() + LIMIT_S
-        while not rospy.ServiceProxy("reset_done", Trigger)().success:  # for the evaluation, after the training
+        while not rospy.ServiceProxy("reset_done", Trigger)().success:  # reset for the evaluation, after the training
             assert time.monotonic() < deadline
             time.sleep(0.1)
         launch.waitForEnd(LIMIT_S)

@@ -1,4 +1,4 @@
-# Import this to find the Python packages of the rooms that are not installed.
+# Makes the Python packages that are not installed (study and qa) importable.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import sys

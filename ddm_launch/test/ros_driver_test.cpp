@@ -1,4 +1,4 @@
-// What RosDriver hears and how long it waits; the nodes that it talks to are played by this one.
+// Tests of RosDriver: what it receives and how long it waits. This program plays the nodes.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ros_driver.h"
 
@@ -30,8 +30,8 @@ namespace {
 
 constexpr int kSteps = 2;
 
-/// Offers what a driver without a trainer looks for. In simulated time that stands still, as here,
-/// an action tells once that it is there.
+/// Offers the services and actions that a driver without a trainer needs. In these tests, simulated
+/// time stands still, so that an action publishes its status only once.
 class Peers {
  public:
   Peers()
@@ -48,16 +48,17 @@ class Peers {
   }
   ~Peers() { release(); }
 
-  /// Each service takes so long, or until release().
+  /// Sets the time that each service takes to answer [s]. release() ends this time early.
   void answerAfter(double seconds) { answer_time_ = seconds; }
 
-  /// The trial goes on and tells its feedback and ground truth until release().
+  /// Makes the trial continue, with feedback and ground truth, until release() is called.
   void runUntilReleased() {
     endless_ = true;
     truth_ = ros::NodeHandle().advertise<sensor_msgs::JointState>(topics::kGroundTruth, 0);
   }
 
-  /// The publisher of ground truth leaves before the trial ends, with or without having told it.
+  /// Stops the publisher of ground truth before the trial ends.
+  /// @param tell  whether the ground truth is published before
   void leaveEarly(bool tell) {
     truth_ = ros::NodeHandle().advertise<sensor_msgs::JointState>(topics::kGroundTruth, 0);
     heard_ = withQueue().subscribe<sensor_msgs::JointState>(
@@ -68,14 +69,14 @@ class Peers {
 
   std::uint32_t numTruths() const { return num_truths_; }
 
-  /// The trials to come begin and end with images of these stamps.
+  /// Sets the stamps of the first and the last image of the following trials [s].
   void showImages(double first, double last) {
     const std::lock_guard<std::mutex> lock(mutex_);
     first_ = ros::Time(first);
     last_ = ros::Time(last);
   }
 
-  /// `path` and `after` [s] of each call of start_recording.
+  /// `path` and `after` [s] of all calls of start_recording.
   std::vector<std::pair<std::string, double>> recordings() const {
     const std::lock_guard<std::mutex> lock(mutex_);
     return recordings_;
@@ -127,7 +128,7 @@ class Peers {
     result.num_steps = kSteps;
     result.exploratory.resize(kSteps);
     result.stamp.resize(kSteps);
-    // Messages arrive at all subscribers some time after they are published.
+    // A subscriber receives messages some time after they were published.
     while (leaves_ && tells_ && num_heard_ < kSteps) std::this_thread::yield();
     if (leaves_) truth_.shutdown();
     for (std::uint32_t i = 0; (truth_ || leaves_) && i < result.stamp.size(); ++i)
@@ -159,7 +160,7 @@ class Peers {
   std::atomic<bool> tells_{true};
   std::atomic<bool> leaves_{false};
   std::atomic<bool> released_{false};
-  mutable std::mutex mutex_;  // guards these three
+  mutable std::mutex mutex_;  // guards the next three members
   ros::Time first_, last_;
   std::vector<std::pair<std::string, double>> recordings_;
   std::promise<void> release_;
@@ -175,7 +176,7 @@ TrialRequest trial() {
   return request;
 }
 
-/// What a trial ends with.
+/// Runs a trial and returns its error message.
 std::string errorOf(RosDriver* driver, const TrialRequest& request) {
   try {
     driver->runTrial(request, [](double) {});
@@ -239,7 +240,7 @@ TEST(RosDriverTest, HasATrialRecordedThatBeginsEarlierThanTheLastOneEnded) {
   };
   runFrom(100.0);
   runFrom(120.0);
-  runFrom(70.0);  // the clock was set back
+  runFrom(70.0);  // the clock has been set back
   runFrom(90.0);
   const std::vector<std::pair<std::string, double>> expected = {{request.bag, 0.0},
                                                                 {request.bag, 110.0},
@@ -249,7 +250,8 @@ TEST(RosDriverTest, HasATrialRecordedThatBeginsEarlierThanTheLastOneEnded) {
   EXPECT_EQ(peers.recordings(), expected);
 }
 
-/// A terminal that is stopped holds up who writes to it, and nobody else.
+/// If a terminal is suspended, writing to it blocks. Only the thread that reports progress may
+/// block.
 TEST(RosDriverTest, HearsItsPeersWhileItsProgressIsHeldUp) {
   Peers peers;
   peers.runUntilReleased();
@@ -261,7 +263,7 @@ TEST(RosDriverTest, HearsItsPeersWhileItsProgressIsHeldUp) {
     peers.release();
   });
   EXPECT_EQ(reporters, std::set<std::thread::id>{std::this_thread::get_id()});
-  EXPECT_GT(peers.numTruths(), 2000u);  // more than any queue of a fixed length had taken
+  EXPECT_GT(peers.numTruths(), 2000u);  // more than a queue of fixed length would hold
   EXPECT_EQ(outcome.states.size(), static_cast<size_t>(kSteps));
 }
 
@@ -278,7 +280,8 @@ TEST(RosDriverTest, DoesNotDoWithoutTheGroundTruthOfASimulatorThatLeavesEarly) {
   }
 }
 
-/// Copies of a client share one connection: who gives up must not close it under who still calls.
+/// Copies of a client share one connection. A call that gives up must not close the connection
+/// while another call uses it.
 TEST(ServiceCall, LeavesTheConnectionToTheCallThatIsUnderWay) {
   Peers peers;
   peers.answerAfter(60.0);
@@ -310,7 +313,7 @@ int main(int argc, char** argv) {
   ros::init(argc, argv, "ros_driver_test");
   ros::NodeHandle nh;
   ros::Time::setNow(ros::Time(1.0));
-  ros::AsyncSpinner spinner(2);  // callbacks of others are handled at any time
+  ros::AsyncSpinner spinner(2);  // callbacks of the peers run at any time
   spinner.start();
   testing::InitGoogleTest(&argc, argv);
   return RUN_ALL_TESTS();

@@ -1,4 +1,4 @@
-# `rosdep install` finds everything that the packages ask for, on Debian, and with Noetic or ROS-O.
+# `rosdep install` finds all dependencies of the packages on Debian, with Noetic and with ROS-O.
 # SPDX-License-Identifier: BSD-3-Clause
 import glob
 import os
@@ -12,7 +12,7 @@ MANIFESTS = [path for pattern in ("*", "examples/*") for path in glob.glob(os.pa
 
 
 def tags(end):
-    """Texts of the tags in all manifests whose names end like this."""
+    """Texts of all tags in the manifests whose names end with `end`."""
     return {element.text.strip() for path in MANIFESTS for element in xml.etree.ElementTree.parse(path).getroot()
             if element.tag.endswith(end)}
 
@@ -23,5 +23,5 @@ def test_every_key_exists_in_the_lists_of_rosdep():
     keys, used = set(known["system"]).union(*known["ros"].values()), tags("depend") - tags("name")
     assert len(used) > 40
     assert used == keys, "rosdep has no such key, rosdep_keys.yaml lacks it, or no package.xml names it any more"
-    # some systems do not have these, so they are no dependencies
+    # Some systems do not have these packages, so they must not be dependencies.
     assert not [key for key in used if "mujoco" in key or "egl" in key]

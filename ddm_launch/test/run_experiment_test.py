@@ -1,4 +1,4 @@
-# run_experiment: its files, that a seed fixes them, that an interruption changes nothing, and what it refuses.
+# run_experiment: its files, repeatability with a seed, interruptions, and invalid inputs.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import signal
@@ -16,7 +16,7 @@ def arguments(out, seed=1, trials=TRIALS):
 
 
 def run(out, *more, **values):
-    """Output of an experiment that succeeds."""
+    """Runs an experiment that must succeed. Returns its output."""
     code, output = run_experiment(*arguments(out, **values), *more)
     assert code == 0, output
     return output

@@ -1,4 +1,4 @@
-# What the tests look at in the folder of an experiment.
+# Reads the files of an experiment for the tests.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 
@@ -10,8 +10,8 @@ from ddm_qa.run_comparison import (COLUMNS, TIME_COLUMNS, comparable, difference
 
 
 def fingerprint(folder):
-    """{path: (size, time of the last change [ns], bytes)} of all in a folder. Two are equal if nothing was written in
-    between, but for the lock of a process that had the folder."""
+    """Returns {path: (size, modification time [ns], bytes)} of all files and folders in a folder. Two fingerprints
+    are equal if nothing was written in between. The lock file of a process is ignored."""
     paths = [os.path.join(parent, name) for parent, folders, files in os.walk(folder)
              for name in folders + files]
     found = {}
@@ -22,7 +22,7 @@ def fingerprint(folder):
 
 
 def changes(before, after):
-    """Paths that are not the same in two fingerprints."""
+    """Paths that differ between two fingerprints."""
     return sorted(path for path in set(before) | set(after) if before.get(path) != after.get(path))
 
 
@@ -31,7 +31,7 @@ def torque_files(num_trials):
 
 
 def read_bag(path):
-    """{topic: list of header stamps [ns]}."""
+    """Returns {topic: list of header stamps [ns]}."""
     stamps = {}
     with rosbag.Bag(path) as bag:
         for topic, message, _ in bag.read_messages():

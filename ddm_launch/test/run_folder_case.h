@@ -1,4 +1,4 @@
-// A run folder of a small experiment, for the tests of what it takes up, what it writes, and its rows.
+// Fixture with the run folder of a small experiment, for the tests of run folders.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -20,7 +20,7 @@ class RunFolderCase : public ::testing::Test {
  protected:
   std::string file(const std::string& name) const { return scratch_.file("run/" + name); }
 
-  /// Makes the folder and finishes this many trials in it.
+  /// Makes the folder and finishes `num_trials` trials.
   void finish(int num_trials) {
     RunFolder folder(configuration_);
     for (int trial = 0; trial < num_trials; ++trial) {

@@ -1,4 +1,4 @@
-// What a run folder writes: files as a whole, nothing over a bag, and a verdict only when there is one.
+// Tests of the files of a run folder: each is written as a whole, and no bag is overwritten.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
@@ -45,7 +45,7 @@ TEST_F(RunFolderFilesTest, BagsOfAnEarlierTryAreKeptUnderOtherNames) {
 
 TEST_F(RunFolderFilesTest, AFolderThatCannotBeMadeOrWrittenIsNamed) {
   writeText(scratch_.file("plain_file"), "");
-  // Below /proc nobody makes files, not even root.
+  // Not even root can create files below /proc.
   for (const std::string& path : {scratch_.file("plain_file"), scratch_.file("plain_file/run"),
                                   std::string("/proc/ddm"), std::string("/proc/self")}) {
     configuration_.experiment.runs = path;
@@ -171,7 +171,7 @@ TEST_F(RunFolderFilesTest, RowsOfWhichAnyByteHasChangedAreRefused) {
   const std::string rows = textOf(file("trials.csv"));
   for (size_t at = 0; at < rows.size(); ++at) {
     std::string changed = rows;
-    changed[at] = static_cast<char>(changed[at] ^ 1);  // another digit, where there is one
+    changed[at] = static_cast<char>(changed[at] ^ 1);  // changes a digit or another character
     writeText(file("trials.csv"), changed);
     expectRefused({"trials.csv"});
   }

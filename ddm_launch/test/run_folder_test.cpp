@@ -1,4 +1,4 @@
-// What a run folder takes up: its own experiment; it refuses any other.
+// Tests of which experiments a run folder resumes and which it refuses.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "run_folder.h"
 
@@ -25,7 +25,7 @@ using testing::writeText;
 
 class RunFolderTest : public testing::RunFolderCase {
  protected:
-  /// Begins the first trial, which is not finished.
+  /// Begins the first trial without finishing it.
   void begin() { RunFolder(configuration_).beginRun({0}); }
 };
 
@@ -103,7 +103,7 @@ TEST_F(RunFolderTest, AnotherValueOfAnyOtherKeyIsRefused) {
   }
 }
 
-/// As the plant of a model file with this digest.
+/// Behaves like a plant of a model file with this digest.
 class DigestPlugin : public testing::ToyPlugin {
  public:
   explicit DigestPlugin(std::string digest)
@@ -165,7 +165,7 @@ TEST_F(RunFolderTest, InLockStepARunIsRecordedWithItsTablesAndOnARobotWithItsBag
     RunFolder(configuration_).writeRun(run, {});
     EXPECT_TRUE(isRecorded());
   }
-  configuration_.robot->crop[0] = 8;  // images of another crop do not go with those to come
+  configuration_.robot->crop[0] = 8;  // images with another crop must not be mixed with later ones
   EXPECT_FALSE(isRecorded());
 }
 
@@ -213,7 +213,7 @@ TEST_F(RunFolderTest, OfTwoExperimentsInOneNewFolderTheFirstThatWritesHasIt) {
   auto third = std::make_unique<RunFolder>(toyConfiguration(scratch_.file("new")));
   RunFolder fourth(toyConfiguration(scratch_.file("new")));
   third->beginRun({0});
-  third.reset();  // the lock is free again
+  third.reset();  // releases the lock
   EXPECT_TRUE(throwsNaming<std::runtime_error>([&] { fourth.beginRun({0}); },
                                                {scratch_.file("new"), "was begun", "meanwhile"}));
 }

@@ -1,4 +1,4 @@
-# rviz shows something in each of its displays during a real experiment, on a screen in memory.
+# rviz shows something in each of its displays during an experiment, on a virtual screen.
 # SPDX-License-Identifier: BSD-3-Clause
 import io
 import os
@@ -13,18 +13,18 @@ from ddm_launch.run_folder import num_finished
 from processes import start_roslaunch
 
 WIDTH, HEIGHT = 1600, 900  # as in ddm.rviz
-LIMIT_S = 120.0            # for rviz to show something everywhere, once a trial is over
+LIMIT_S = 120.0  # time limit for all displays after the end of a trial
 
-# Display: the middle of its place in the window (left, top, right, bottom).
+# The centre region of each display in the window (left, top, right, bottom) [pixels].
 DISPLAYS = {"Camera": (190, 110, 570, 440), "Learning curve": (150, 530, 600, 870),
             "Feature space": (950, 90, 1480, 630), "Prediction": (900, 690, 1500, 870)}
 
 
 @pytest.fixture(name="screen")
 def start_screen(tmp_path):
-    """The environment of programs that draw on an X server in memory."""
+    """Starts an X server in memory. Returns the environment for programs that draw on it."""
     reading, writing = os.pipe()
-    server = subprocess.Popen(  # it picks a free number by itself, and writes it when it is ready
+    server = subprocess.Popen(  # the server chooses a free number and writes it when it is ready
         ["Xvfb", "-displayfd", str(writing), "-screen", "0", "%dx%dx24" % (WIDTH, HEIGHT), "-nolisten", "tcp"],
         pass_fds=[writing], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     os.close(writing)
@@ -36,7 +36,7 @@ def start_screen(tmp_path):
 
 
 def blank_displays(screen):
-    """Names of the displays whose places on the screen are of one colour."""
+    """Names of the displays whose region on the screen has a single colour."""
     png = subprocess.check_output(["import", "-window", "root", "-depth", "8", "png:-"], env=dict(os.environ, **screen))
     pixels = np.array(Image.open(io.BytesIO(png)).convert("RGB"))
     assert pixels.shape == (HEIGHT, WIDTH, 3)

@@ -1,4 +1,4 @@
-# demo.sh, test.sh, what they share, and fresh_root.sh: what they refuse, with which words, and that they do nothing twice.
+# demo.sh, test.sh, workspace.sh and fresh_root.sh: their error messages, and that they repeat no work.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import re
@@ -26,7 +26,7 @@ class Shell:
         return done.returncode, done.stdout
 
     def run(self, code, script="workspace.sh"):
-        """Runs bash code after sourcing a script, as strictly as the scripts run themselves."""
+        """Sources a script and runs bash code with the strict options of the scripts."""
         path = shlex.quote(os.path.join(SCRIPTS, script))
         return self.call("/bin/bash", "-c", "set -euo pipefail; . %s; %s" % (path, code))
 
@@ -136,11 +136,12 @@ def test_bad_arguments_are_refused_and_help_is_printed_before_anything_is_done(s
 def test_another_port_is_taken_when_the_masters_port_is_in_use(shell):
     with socket.socket() as holder:
         try:
-            holder.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)  # a master that has ended leaves it waiting
+            # the port of a finished master may still be in TIME_WAIT
+            holder.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
             holder.bind(("", 11311))
             holder.listen(1)
         except OSError:
-            pass  # somebody's master has it: just as good
+            pass  # another master uses the port, which serves as well
         code, output = shell.run("free_master_port", "demo.sh")
     assert code == 0 and int(output) != 11311
 

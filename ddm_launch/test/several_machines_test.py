@@ -1,4 +1,4 @@
-# Plant, controller and trainer on three machines without a shared disk: the experiment is that of one process.
+# Plant, controller and trainer on three machines without a shared disk give the same result as one process.
 # SPDX-License-Identifier: BSD-3-Clause
 import signal
 
@@ -23,7 +23,7 @@ def test_three_machines_give_the_torques_and_models_of_one_process(tmp_path):
             network.load(enter, nft_rule(peers=True))
 
         def start(machine, *words):
-            """roslaunch on a machine, with what doc/reference/network.md says to set there."""
+            """Starts roslaunch on a machine, with the environment that doc/reference/network.md describes."""
             environment = dict(line_by_line(), ROS_MASTER_URI="http://%s:11311" % trainer[0], ROS_IP=machine[0],
                                ROS_HOME=str(disk / "ros"))
             environment.pop("ROS_HOSTNAME", None)

@@ -1,4 +1,4 @@
-# A Slurm cluster for a test: munged, slurmctld and slurmd on this machine, with all that is theirs in one folder.
+# A Slurm cluster for tests: munged, slurmctld and slurmd run on this machine, with all files in one folder.
 # SPDX-License-Identifier: BSD-3-Clause
 import getpass
 import os
@@ -7,7 +7,7 @@ import subprocess
 from processes import Process, free_port
 from sweeps import wait_for
 
-# No root, cgroup or systemd is assumed. The plugin for cgroups v1 is the one that slurmd can load and leave alone.
+# The cluster needs no root, cgroup or systemd. slurmd can load the plugin for cgroups v1 without using cgroups.
 SLURM_CONF = """\
 ClusterName=test
 SlurmctldHost=localhost
@@ -45,16 +45,17 @@ CgroupMountpoint={folder}/no_cgroup
 
 
 def cgroup_plugin():
-    """The line of cgroup.conf that names the plugin, which versions before 22.05 do not know (Debian 11 has 20.11)."""
+    """The line of cgroup.conf that selects the plugin; empty for versions before 22.05, which do not support the
+    line (Debian 11 has 20.11)."""
     version = subprocess.check_output(["/usr/sbin/slurmd", "-V"], universal_newlines=True)
     return "CgroupPlugin=cgroup/v1" if int(version.split()[-1].split(".")[0]) >= 22 else ""
 
 
 class SlurmCluster:
-    """Two CPUs of this machine. Commands of Slurm find it by `environment`."""
+    """Two CPUs of this machine. Slurm commands find the cluster through `environment`."""
 
     def __init__(self, folder):
-        """folder: empty, absolute, without spaces."""
+        """folder: an empty folder with an absolute path without spaces."""
         self.folder = folder
         self.environment = {"SLURM_CONF": os.path.join(folder, "slurm.conf")}
         self._daemons = []
@@ -76,7 +77,7 @@ class SlurmCluster:
         with open(os.open(key, os.O_WRONLY | os.O_CREAT, 0o600), "wb") as stream:
             stream.write(os.urandom(1024))
         socket = os.path.join(self.folder, "munge.socket")
-        # --force: the folder of a test may lie in one that others can write
+        # --force: other users may have write access to a parent folder of the test's folder
         self._daemon("munged", "--foreground", "--force", "--socket", socket, "--key-file", key, "--origin",
                      "127.0.0.1", *("--%s-file=%s/munged.%s" % (name, self.folder, name)
                                     for name in ("log", "pid", "seed")))
@@ -86,7 +87,7 @@ class SlurmCluster:
         self._wait(lambda: self.call("sinfo", "--noheader", "--format", "%T").strip() == "idle", "an idle node")
 
     def _daemon(self, name, *arguments):
-        # falls with this process even if it is killed
+        # the daemon ends with this process even if this process is killed
         command = ["setpriv", "--pdeathsig", "KILL", "/usr/sbin/" + name] + list(arguments)
         self._daemons.append(Process(command, dict(os.environ, **self.environment)))
 
@@ -103,13 +104,13 @@ class SlurmCluster:
             raise AssertionError("%s\n%s" % (error, "\n".join(daemon.output for daemon in self._daemons)))
 
     def call(self, *command):
-        """Output of a command of Slurm, stdout and stderr together."""
+        """Returns stdout and stderr of a Slurm command."""
         done = subprocess.run(command, env=dict(os.environ, **self.environment), stdin=subprocess.DEVNULL,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
         return done.stdout
 
     def tasks(self):
-        """[state] of the tasks that have not ended."""
+        """States of the tasks that have not ended."""
         return self.call("squeue", "--noheader", "--array", "--format", "%T").split()
 
     def stop(self):

@@ -1,4 +1,4 @@
-# Sweeps as Slurm job arrays: on a cluster that is this machine, and where sbatch, squeue and scancel answer in other ways.
+# Sweeps as Slurm job arrays: on a cluster on this machine, and with unusual answers of sbatch, squeue and scancel.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import re
@@ -80,7 +80,7 @@ def test_ctrl_c_cancels_the_job_and_what_sbatch_refuses_is_told_with_its_words(c
 
 
 class Site:
-    """A cluster whose commands answer as a test says, and whose tasks compute nothing."""
+    """A cluster whose commands give prepared answers and whose tasks compute nothing."""
 
     def __init__(self, folder):
         self.folder, self.out, self.started = folder, str(folder / "out"), []
@@ -90,7 +90,8 @@ class Site:
         self.answer("scancel", "echo '%s' > '%s'" % (FORGOTTEN, folder / "squeue_answer"))
 
     def answer(self, name, script):
-        """From now on the command runs this script, which never changes under a shell that reads it."""
+        """Makes a command run this script from now on. The file is replaced as a whole, because a shell may be
+        reading it."""
         (self.folder / "new").write_text(script + "\n")
         (self.folder / "new").rename(self.folder / (name + "_answer"))
         path = self.folder / "bin" / name
@@ -109,7 +110,7 @@ class Site:
         return self.started[-1]
 
     def start_and_watch(self):
-        """A sweep that has asked for the state of its job."""
+        """Starts a sweep and waits until it has asked for the state of its job."""
         before, process = len(self.calls("squeue")), self.start()
         wait_for(lambda: len(self.calls("squeue")) > before, "the first squeue")
         return process
@@ -121,7 +122,7 @@ class Site:
 
 @pytest.fixture(name="site")
 def make_site(tmp_path):
-    before = signal.signal(signal.SIGHUP, signal.SIG_DFL)  # not as under nohup
+    before = signal.signal(signal.SIGHUP, signal.SIG_DFL)  # undoes the effect of nohup
     site = Site(tmp_path)
     yield site
     for process in site.started:
@@ -154,7 +155,8 @@ def test_a_job_outlives_its_sweep_and_its_cluster_is_asked_and_told_to_cancel_it
         process.send(number)
         assert_end(process, *([-number] if number == signal.SIGKILL else [
             128 + number, "Slurm job 4711 of cluster west may be running", "same command waits for it", "'scancel -M west 4711'"]))
-    assert_end(site.start(engine=()), 1, "4711 of cluster west may be running", site.out + "/slurm_job")  # by GNU parallel
+    # by GNU parallel
+    assert_end(site.start(engine=()), 1, "4711 of cluster west may be running", site.out + "/slurm_job")
     process = site.start_and_watch()
     process.send(signal.SIGINT)
     assert_end(process, 130)
@@ -163,7 +165,7 @@ def test_a_job_outlives_its_sweep_and_its_cluster_is_asked_and_told_to_cancel_it
 
 @pytest.mark.parametrize("answer, told", [
     (UNREACHABLE, True), ("sleep 0.1; exit 3", True), ("echo squeue: error: busy >&2", True),
-    ("echo PREEMPTED; echo NODE_FAIL", False)])  # such tasks may be queued again
+    ("echo PREEMPTED; echo NODE_FAIL", False)])  # Slurm may queue such tasks again
 def test_a_job_that_may_be_running_is_waited_for(answer, told, site):
     site.answer("squeue", answer)
     process = site.start_and_watch()

@@ -1,4 +1,4 @@
-# A short `qa soak` of both runs finds nothing, and a frame that is removed from one of its bags is lost.
+# A short `qa soak` of both loops finds nothing, and it counts an image that is removed from a bag as lost.
 # SPDX-License-Identifier: BSD-3-Clause
 import rosbag
 

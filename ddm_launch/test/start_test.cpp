@@ -1,4 +1,4 @@
-// Tests of what an experiment starts from: bags and models must fit together, or are refused.
+// Tests of starting from bags and models: they must fit together, or are refused.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "start.h"
 
@@ -20,7 +20,7 @@ using testing::toyConfiguration;
 
 class StartTest : public ::testing::Test {
  protected:
-  /// A bag of three frames, 0.2 s between them.
+  /// Writes a bag with three samples at intervals of 0.2 s.
   std::string bag(int image_size) {
     const std::string path = scratch_.file(std::to_string(image_size) + ".bag");
     BagWriter writer(path, BagOptions());
@@ -37,7 +37,7 @@ class StartTest : public ::testing::Test {
     return path;
   }
 
-  /// A model of the configuration that was never trained.
+  /// A model that fits the configuration but was never trained.
   std::shared_ptr<const Ddm> untrainedModel(int torque_dim) const {
     const ModelOptions& options = configuration_.model.model;
     const int image_size = configuration_.model.image.size;
@@ -60,7 +60,7 @@ TEST_F(StartTest, BagsOfThePlantGetTheirChecksums) {
   prepareStart(&configuration_);
   ASSERT_EQ(configuration_.start.checksums.size(), 1U);
   EXPECT_EQ(configuration_.start.checksums[0].substr(0, 6), "crc32-");
-  EXPECT_NO_THROW(prepareStart(&configuration_));  // an experiment that is taken up
+  EXPECT_NO_THROW(prepareStart(&configuration_));  // a resumed experiment
   configuration_.start.checksums[0] = "crc32-00000000";
   EXPECT_TRUE(throwsNaming<std::invalid_argument>([this] { prepareStart(&configuration_); },
                                                   {"51.bag has changed", "crc32-00000000"}));

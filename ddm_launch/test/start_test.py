@@ -1,4 +1,4 @@
-# Experiments that start from a model and bags, and evaluate: the same by both drivers, resumed, and what is refused.
+# Experiments that start from a model and bags: both drivers agree, they can be resumed, and invalid inputs are refused.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import shutil
@@ -13,7 +13,7 @@ NAMES = [name for name in expected_files(1) if not name.endswith(".bag")]
 
 
 class Before:
-    """An experiment from whose bags and last model others start, with seed 2."""
+    """An experiment whose bags and last model are the start of others, with seed 2."""
 
     def __init__(self, folder):
         self.folder = os.path.join(folder, "before")

@@ -1,4 +1,4 @@
-# study: differences of variants and schedules, what it collects and compares, and the rules that make the results.
+# study: differences of variants and schedules, collected and compared tables, and the rules that make the results.
 # SPDX-License-Identifier: BSD-3-Clause
 import math
 import os
@@ -24,7 +24,7 @@ def write(path, text):
 
 
 def write_trials(path, success, seeds=4, trials=3):
-    """A trials.csv; success(seed, trial)."""
+    """Writes a trials.csv with success(seed, trial)."""
     return write(path, "seed,trial,frames,success,final_error\n" + "".join(
         "%d,%d,%d,%d,1\n" % (seed, trial, 100 * (trial + 1), success(seed, trial))
         for seed in range(seeds) for trial in range(trials)))
@@ -38,7 +38,7 @@ def test_variants_are_compared_with_the_preset_by_seed_and_the_worst_comes_first
     assert list(dict.fromkeys(table.frames)) == ["100", "200", "300", "100 to 300", "200 to 300"]
     steps, blur = (table[(table.variant == name) & (table.frames == "200 to 300")].iloc[0] for name in ("steps", "blur"))
     assert (steps.seeds, steps.difference, steps.se) == (3, -1.0, 0.0)
-    assert (steps.p, steps.p_holm) == (0.25, 0.5)  # three of three pairs, two variants
+    assert (steps.p, steps.p_holm) == (0.25, 0.5)  # three of three pairs differ; there are two variants
     assert blur.difference == -0.25 and blur.se == pytest.approx(0.25)
     rows = pages.Functions(str(tmp_path)).variants("ablation", "200 to 300").split("\n")
     assert rows == ["| no multi-step loss | −1.000 ± 0.000 | 0.500 |", "| no blur | −0.250 ± 0.250 | 1.000 |"]
@@ -57,7 +57,7 @@ def test_schedules_are_compared_on_the_seeds_that_all_have(tmp_path):
         rows = ["%d,8,%g,0.1,0.9\n" % (seed, 0.02 * (k + 1)) for seed in range(3 - (k > 0))]
         write(tmp_path / "tile_predictions" / name / "predictions.csv",
               "seed,steps,rmse,rmse_repeat,position_r2\n" + "".join(rows))
-    late = results.late_success(str(tmp_path))  # the means over 900 to 1500 frames
+    late = results.late_success(str(tmp_path))  # means over 900 to 1500 frames
     assert list(late.index) == [0, 1] and late.joint[0] == pytest.approx(1 / 7)
     ratio = results.predictions(str(tmp_path), "tile")["ratio"].loc[8]
     assert list(ratio.index) == [0, 1] and ratio.sequential[0] == pytest.approx(0.4)
@@ -79,7 +79,7 @@ def test_rows_of_seeds_made_again_are_equal_but_for_times_and_versions(again, co
     header = "seed,trial,v_r,train_s,version\n"
     write(tmp_path / "old/trials.csv", header + "300,0,1.5,0.1,1.0.0\n300,1,2.5,0.1,1.0.0\n301,0,3.5,0.1,1.0.0\n")
     write(tmp_path / "old/times.csv", "seed,train_s\n300,1\n")
-    write(tmp_path / "new/times.csv", "seed,train_s\n300,2\n")  # times alone are not compared
+    write(tmp_path / "new/times.csv", "seed,train_s\n300,2\n")  # computing times are not compared
     if again:
         write(tmp_path / "new/trials.csv", header + again)
     found, output = call_main(main, ["compare", str(tmp_path / "old"), str(tmp_path / "new")])
@@ -123,7 +123,7 @@ def test_a_run_has_rows_for_features_predictions_and_goal_and_damage_is_named(tm
         ("features", "0", "shoulder"), ("features", "0", "elbow"),
         *(("prediction", steps, joint) for steps in ("1", "5", "15") for joint in ("shoulder", "elbow")), ("goal", "", "all")]
     assert all(0.0 <= float(row["median"]) <= float(row["quantile_90"]) <= 180.0 for row in rows[:-1])
-    assert float(rows[0]["median"]) < 45.0  # it would be 90 of features that say nothing
+    assert float(rows[0]["median"]) < 45.0  # features without information would have a median of 90
     bag = run / "trial_001" / "trial.bag"
     os.truncate(str(bag), os.path.getsize(str(bag)) // 2)
     code, output = call_main(main, ["diagnose", str(run), "--out", table])
@@ -167,7 +167,8 @@ def test_programs_accept_the_options_of_every_sweep(plan):
         words = re.sub(r"--program \S+", "", words)
         code, output = call(["bash", "-c", "%s %s %s --out /dev/null" % (programs[name], words, more)])
         if "needs MuJoCo" not in output or has_mujoco():
-            assert code == 1 and "/dev/null" in output, "%s: %s" % (words, output)  # 2: it refuses its options
+            # exit code 2 would mean invalid options
+            assert code == 1 and "/dev/null" in output, "%s: %s" % (words, output)
 
 
 def test_results_are_made_and_the_same_command_resumes(tmp_path):

@@ -1,4 +1,4 @@
-# Sweeps over ssh hosts, played by this machine: seeds are spread, hosts may be gone, nothing is left running.
+# Sweeps over ssh hosts, simulated on this machine: seeds are distributed, hosts may fail, and all processes end.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import socket
@@ -33,11 +33,11 @@ Host *
   StrictHostKeyChecking no
   LogLevel ERROR
 """
-PRIVILEGE_SEPARATION = "/run/sshd"  # sshd started by root wants it; a boot makes it, a bare system has none
+PRIVILEGE_SEPARATION = "/run/sshd"  # sshd needs this folder when root starts it; some systems create it only at boot
 
 
 class SshHosts:
-    """The hosts `first` and `second`, for ssh called as `ssh_command` says."""
+    """Simulates the hosts `first` and `second`. `ssh_command` is the ssh command for them."""
 
     def __init__(self, folder):
         self.folder = folder
@@ -46,8 +46,8 @@ class SshHosts:
         self._made_folder = os.getuid() == 0 and not os.path.isdir(PRIVILEGE_SEPARATION)
         if self._made_folder:
             os.mkdir(PRIVILEGE_SEPARATION, 0o755)
-        # Where /sys is missing (a bare chroot) lscpu complains, and GNU parallel takes that for a fault of its own.
-        # Without an answer from lscpu it counts the cores in /proc.
+        # In a bare chroot without /sys, lscpu prints warnings, which GNU parallel reports as its own. If lscpu fails,
+        # GNU parallel counts the cores in /proc.
         os.mkdir(os.path.join(folder, "bin"))
         with open(os.path.join(folder, "bin", "lscpu"), "w") as stream:
             stream.write("#!/bin/sh\nexit 1\n")
@@ -57,7 +57,7 @@ class SshHosts:
         for name, text in (("sshd_config", SSHD_CONFIG), ("ssh_config", SSH_CONFIG)):
             with open(os.path.join(folder, name), "w") as stream:
                 stream.write(text.format(folder=folder, port=self.port))
-        # falls with this process even if it is killed
+        # sshd ends with this process even if this process is killed
         self._sshd = Process(["setpriv", "--pdeathsig", "KILL", "/usr/sbin/sshd", "-D", "-e", "-f",
                               os.path.join(folder, "sshd_config")])
         wait_for(self._answers, "sshd")
@@ -76,12 +76,12 @@ class SshHosts:
 
 @pytest.fixture(name="start")
 def make_start(tmp_path):
-    """A function that starts a sweep over hosts."""
+    """Returns a function that starts a sweep over hosts."""
     hosts = SshHosts(str(tmp_path))
 
     def start(names, seeds, trials):
         (tmp_path / "hosts").write_text("\n".join(names) + "\n")
-        # a shell on another machine knows nothing of this workspace: sshd hands no variable of ours on
+        # sshd passes on no variable of this workspace, as on another machine.
         return Sweep(*debug(str(tmp_path / "out"), seeds, trials), "--jobs", 1, "--hosts", tmp_path / "hosts",
                      environment={"PARALLEL_SSH": hosts.ssh_command})
     yield start

@@ -1,4 +1,4 @@
-# Sweeps by GNU parallel: their files, that an interruption changes nothing, and what they refuse.
+# Sweeps with GNU parallel: their files, interruptions, and invalid inputs.
 # SPDX-License-Identifier: BSD-3-Clause
 import errno
 import os
@@ -15,19 +15,19 @@ from sweeps import (Sweep, assert_ends, assert_nothing_runs, assert_table, debug
                     wait_for)
 from ddm_launch.sweep import main
 
-LONG = 12  # trials: enough to see a seed at its work
+LONG = 12  # trials, enough to observe a seed while it runs
 
 
 @pytest.fixture(name="reference", scope="module")
 def make_reference(tmp_path_factory):
-    """(folder, output) of a sweep of seeds 0 ... 3 with one trial."""
+    """Returns (folder, output) of a sweep of seeds 0 ... 3 with one trial."""
     out = str(tmp_path_factory.mktemp("sweep") / "reference")
     return out, assert_ends(0, [], *debug(out))
 
 
 @pytest.fixture(name="out")
 def out_folder(tmp_path):
-    """A path; nothing is there yet, and nothing that was started for it runs when the test has ended."""
+    """A path at which no file exists yet. After the test, no process that uses the path may run."""
     out = str(tmp_path / "out")
     yield out
     assert_nothing_runs(out)
@@ -185,7 +185,7 @@ def test_folders_and_files_that_cannot_be_written_are_named(out, tmp_path):
     for folder in (str(tmp_path / "plain_file"), "/proc/ddm"):
         assert_ends(1, ["cannot write", folder], *debug(folder))
     limits = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (10, limits[1]))  # as on a full disk
+    resource.setrlimit(resource.RLIMIT_FSIZE, (10, limits[1]))  # simulates a full disk
     try:
         assert_ends(1, ["sweep: ", out, os.strerror(errno.EFBIG)], *debug(out))
     finally:

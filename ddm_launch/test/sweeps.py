@@ -1,4 +1,4 @@
-# Runs sweeps as a user would, and looks at what they do and leave behind.
+# Runs sweeps as a user would, and inspects their processes and files.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import signal
@@ -9,14 +9,14 @@ from run_files import files_in, read_bytes
 
 
 class Sweep(Process):
-    """`rosrun ddm_launch sweep`, in a process group of its own."""
+    """`rosrun ddm_launch sweep` in a process group of its own."""
 
     def __init__(self, *arguments, environment=None, **kwargs):
         command = ["/usr/bin/setsid", find_program("sweep")] + list(arguments)
         super().__init__(command, dict(line_by_line(), **(environment or {})), **kwargs)
 
     def kill_group(self):
-        """Ends it and all in its group without a chance to tidy up."""
+        """Kills the sweep and its process group without a chance to clean up."""
         os.killpg(self._process.pid, signal.SIGKILL)
         self.waitForEnd(10.0)
 
@@ -27,7 +27,7 @@ def debug(out, seeds="0:4", trials=1):
 
 
 def assert_ends(code, words, *arguments, **kwargs):
-    """Runs a sweep to its end, which has this exit code and these words. Returns its output."""
+    """Runs a sweep to its end and checks its exit code and words in its output. Returns the output."""
     process = Sweep(*arguments, **kwargs)
     assert process.waitForEnd(90.0) == code, process.output
     assert all(word in process.output for word in words), process.output
@@ -35,7 +35,7 @@ def assert_ends(code, words, *arguments, **kwargs):
 
 
 def assert_table(out, seeds, trials=1):
-    """sweep.csv: one header, then exactly the rows of these seeds."""
+    """sweep.csv has one header, then exactly the rows of these seeds."""
     expected = [read_bytes(seed_folder(out, seed), "trials.csv").splitlines() for seed in seeds]
     lines = read_bytes(out, "sweep.csv").splitlines()
     assert lines == expected[0][:1] + [row for table in expected for row in table[1:trials + 2]]
@@ -43,7 +43,7 @@ def assert_table(out, seeds, trials=1):
 
 
 def wait_for(condition, what, limit_s=30.0):
-    """Returns the condition's value as soon as it is true; fails after the limit."""
+    """Returns the value of condition() as soon as it is true; fails after the time limit."""
     end = time.monotonic() + limit_s
     while True:
         value = condition()
@@ -55,31 +55,32 @@ def wait_for(condition, what, limit_s=30.0):
 
 
 def processes_with(words):
-    """{pid: words of the command line} of the running processes whose command line holds all of these texts."""
+    """{process id: words of the command line} of the running processes whose command line contains all of these
+    texts."""
     found = {}
     for pid in filter(str.isdigit, os.listdir("/proc")):
         try:
             command = read_bytes("/proc", pid, "cmdline").decode(errors="replace").split("\0")
-        except OSError:  # it ended meanwhile
+        except OSError:  # the process has ended meanwhile
             continue
         if int(pid) != os.getpid() and all(word in " ".join(command) for word in words):
             found[int(pid)] = command
-    return found  # what has ended and waits for its parent has an empty command line
+    return found  # the command line of a zombie process is empty
 
 
 def assert_nothing_runs(out):
-    """No process that names the folder is left, or it ends by itself at once."""
+    """Checks that all processes that name the folder end within the limit."""
     wait_for(lambda: not processes_with([out]), "the end of all processes", 10.0)
 
 
 def programs_of(folder):
-    """Numbers of the processes that compute a seed."""
+    """Process ids of the programs that compute a seed."""
     return [pid for pid, command in processes_with([folder]).items()
             if command[0].endswith("/run_experiment") and folder in command]
 
 
 def snapshot(folder):
-    """{name: (time of the last change, content)} of all files in a folder."""
+    """Returns {name: (modification time, content)} of all files in a folder."""
     return {name: (os.stat(os.path.join(folder, name)).st_mtime_ns, read_bytes(folder, name))
             for name in files_in(folder)}
 

@@ -1,4 +1,4 @@
-// Tests of the tables: what is written is read back, what is damaged is refused.
+// Tests of the tables: written tables are read back unchanged, and damaged tables are refused.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tables.h"
 
@@ -18,7 +18,8 @@ using testing::toyRow;
 
 std::string header() { return formatTrialsCsv({}); }
 
-/// The row of trial 0 with another text in one of its columns, counted from 0.
+/// The row of trial 0 with another text in one of its columns.
+/// @param index  column, counted from 0
 std::string withColumn(size_t index, const std::string& value) {
   const std::string text = formatTrialsCsv({toyRow(0)});
   std::string row = text.substr(header().size(), text.size() - header().size() - 1);

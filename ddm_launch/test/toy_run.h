@@ -1,4 +1,4 @@
-// What the tests of an experiment share: a small configuration, rows, and a driver that obeys.
+// A small configuration, table rows and a driver that records its calls, for tests of experiments.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -30,7 +30,7 @@ namespace testing {
 
 constexpr int kToySteps = 30;
 
-/// A toy as the plant of a configuration.
+/// A toy plant as the plant of a configuration.
 class ToyPlugin : public PlantPlugin {
  public:
   explicit ToyPlugin(const ToyPlant::Traits& traits) : maker_(traits) {}
@@ -48,13 +48,13 @@ class ToyPlugin : public PlantPlugin {
   ToyMaker maker_;
 };
 
-/// Another plant, with all that follows from it.
+/// Sets the plant of a configuration and all values that depend on the plant.
 inline void usePlant(std::shared_ptr<const PlantPlugin> plant, Configuration* all) {
   all->plant = std::move(plant);
   all->plant_info = makePlant(*all->plant)->info();
 }
 
-/// @param block  of YAML, like {type: moving_tile, dt: 0.1}
+/// @param block  block `plant` as YAML, e.g. {type: moving_tile, dt: 0.1}
 inline std::shared_ptr<const PlantPlugin> plantOf(const std::string& block) {
   YAML::Node blocks;
   blocks["plant"] = YAML::Load(block);
@@ -109,7 +109,7 @@ inline void writeText(const std::string& path, const std::string& text) {
   std::ofstream(path) << text;
 }
 
-/// Name, time of the last change and bytes of all that is in a folder.
+/// Content and modification time of each file of a folder, by name.
 inline std::map<std::string, std::string> fingerprintOf(const std::string& folder) {
   namespace fs = boost::filesystem;
   std::map<std::string, std::string> found;
@@ -123,7 +123,7 @@ inline std::map<std::string, std::string> fingerprintOf(const std::string& folde
   return found;
 }
 
-/// A bag of one black frame.
+/// Writes a bag with one black image.
 inline void writeToyBag(const std::string& path) {
   const int size = ImageOptions().size;
   BagWriter bag(path, BagOptions());
@@ -135,7 +135,7 @@ inline void writeToyBag(const std::string& path) {
   bag.close();
 }
 
-/// Notes what is asked of it. Every greedy run ends where `state` says.
+/// Records all calls. Each greedy evaluation ends in `state`.
 class ObedientDriver : public Driver {
  public:
   TrialOutcome runTrial(const TrialRequest& request, const PhaseCallback& progress) override {
@@ -180,10 +180,10 @@ class ObedientDriver : public Driver {
     return true;
   }
 
-  bool has_models = true;               ///< that can be saved
-  size_t fails_at = 0;                  ///< number of the call that fails, from 1; 0: none
+  bool has_models = true;               ///< whether models can be saved
+  size_t fails_at = 0;                  ///< number of the call that throws, from 1; 0: none
   Eigen::VectorXd state;                ///< empty: no ground truth
-  std::optional<double> goal_distance;  ///< of each frame
+  std::optional<double> goal_distance;  ///< distance of each image
   std::vector<std::string> calls;
   std::vector<TrialRequest> requests;
   std::vector<std::vector<std::string>> bags_of_training;

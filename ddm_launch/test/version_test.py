@@ -1,4 +1,4 @@
-# The version of the code that a build records, wherever the checkout comes from.
+# The version of the code that a build records, for all kinds of checkouts.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import shutil
@@ -16,7 +16,7 @@ def git(checkout, *arguments):
 
 
 def version(checkout, **environment):
-    """The version that a build would record. The checkout must not change."""
+    """The version that a build would record. Fails if the checkout changes."""
     before, out = sorted(os.walk(checkout)), checkout.parent / "version.h"
     subprocess.run([shutil.which("cmake"), "-DSOURCE=%s" % (checkout / "ddm_launch"), "-DOUT=%s" % out, "-DPACKAGE_VERSION=1.2.3",
                     "-P", os.path.join(PACKAGE, "cmake", "write_version.cmake")], check=True, env=dict(os.environ, **environment))
@@ -38,7 +38,7 @@ def test_a_checkout_has_its_commit_and_tells_changes_as_far_as_git_knows_them(tm
     (checkout / "ddm_launch" / "code").write_text("2")
     assert version(checkout) == "1.2.3 (%s-dirty)" % commit
     (checkout / "ddm_launch" / "code").write_text("1")
-    if os.geteuid() == 0:  # a checkout of another user
+    if os.geteuid() == 0:  # a checkout that belongs to another user
         for folder, _, files in os.walk(checkout):
             for name in [""] + files:
                 os.chown(os.path.join(folder, name), 12345, 12345)

@@ -1,4 +1,4 @@
-# What can be watched of an experiment without rviz, and that watching changes nothing.
+# Topics for watching an experiment without rviz. Watching does not change the experiment.
 # SPDX-License-Identifier: BSD-3-Clause
 import collections
 import math
@@ -14,7 +14,7 @@ import yaml
 from processes import Process, find_program, roslaunch, run_experiment
 from run_files import differences, expected_files
 
-FRAMES, RATE = 2 * 30 * 2, 30.0  # so low that the rest of the launch takes less time than these frames
+FRAMES, RATE = 2 * 30 * 2, 30.0  # so low that starting the other nodes takes less time than these images
 TOPICS = {"trials": String, "prediction_image": Image, "feature_space_image": Image, "plan_scalars": PlanScalars}
 
 
@@ -37,7 +37,7 @@ def test_all_of_a_watched_experiment_is_on_topics_and_watching_changes_nothing(m
     prediction, plane, scalars = heard["prediction_image"], heard["feature_space_image"], heard["plan_scalars"]
     assert (prediction[-1].width, prediction[-1].encoding) == (3 * 255 + 6, "mono8")
     assert (plane[-1].width, plane[-1].height, plane[-1].encoding) == (605, 605, "rgb8")
-    assert len(scalars) > 60  # all of the evaluations, and some
+    assert len(scalars) > 60  # all steps of the evaluations, and some others
     assert all(number.goal_distance >= 0.0 and number.solve_time > 0.0 for number in scalars)
     assert any(math.isnan(number.prediction_error) for number in scalars)
     assert any(number.prediction_error > 0.0 for number in scalars)

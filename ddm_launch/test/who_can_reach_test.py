@@ -1,4 +1,4 @@
-# Which sockets of a launch other machines reach: as doc/reference/network.md says, and none with its rule.
+# Sockets of a launch that other machines can reach: those of doc/reference/network.md, and none with its rule.
 # SPDX-License-Identifier: BSD-3-Clause
 import contextlib
 import glob
@@ -18,7 +18,7 @@ LISTENS, UDP = "0A", "07"  # states in /proc/net
 LOOPBACK, ANY = "0100007F", "00000000"  # addresses in /proc/net
 HINDRANCE = why_no_nft()
 
-# Prints the TCP ports, of those given, that take a connection.
+# Prints which of the given TCP ports accept a connection.
 PROBE = """
 import socket, sys
 for port in sys.argv[2:]:
@@ -31,15 +31,15 @@ for port in sys.argv[2:]:
 
 
 def start_launch(folder, port, enter=(), **settings):
-    """An experiment whose nodes have all found each other, in the environment of a user who has set nothing for ROS but what is
-    given here. enter: words before a command that runs elsewhere."""
+    """Starts an experiment with all nodes. The environment has no other settings for ROS. enter: words to put before a
+    command that runs elsewhere."""
     clean = {name: value for name, value in line_by_line().items() if name not in ("ROS_HOSTNAME", "ROS_IP", "ROS_MASTER_URI")}
     return Process([*enter, "roslaunch", "-p", port, "ddm_launch", "experiment.launch", "preset:=debug", "trials:=999",
                     "view:=true", "runs:=%s/run" % folder], dict(clean, ROS_HOME=str(folder), **settings))
 
 
 def family(process_id):
-    """{name of the program: process id} of a process and all that it has started."""
+    """Returns {program name: process id} of a process and all its descendants."""
     found, todo = {}, [process_id]
     while todo:
         number = todo.pop()
@@ -53,7 +53,7 @@ def family(process_id):
 
 
 def sockets(process_id):
-    """(protocol, address, port) of all sockets that take connections or datagrams; addresses as /proc/net has them."""
+    """(protocol, address, port) of all sockets that accept connections or datagrams; addresses as in /proc/net."""
     inodes = {os.readlink(path) for path in glob.glob("/proc/%d/fd/*" % process_id) if os.path.islink(path)}
     found = []
     for table, state in (("tcp", LISTENS), ("tcp6", LISTENS), ("udp", UDP), ("udp6", UDP)):
@@ -66,7 +66,7 @@ def sockets(process_id):
 
 
 def sockets_of(launch):
-    """{program: its sockets}"""
+    """Returns {program: its sockets}."""
     launch.waitForText("trial  0/999", 120.0)
     found = {name: sockets(number) for name, number in family(launch.pid).items()}
     for name in NODES + LAUNCHERS:
@@ -77,7 +77,7 @@ def sockets_of(launch):
 def test_topics_and_services_of_a_plain_launch_keep_to_this_machine(tmp_path):
     with start_launch(tmp_path, free_port()) as launch:
         found = sockets_of(launch)
-    for name in NODES:  # only XML-RPC is open
+    for name in NODES:  # only XML-RPC is reachable
         assert [socket[0] for socket in found[name] if socket[1] != LOOPBACK] == ["tcp"], name
         assert sorted(socket[0] for socket in found[name] if socket[1] == LOOPBACK) == ["tcp", "udp"], name
     for name in LAUNCHERS:
@@ -94,11 +94,11 @@ def test_with_the_rule_of_the_page_nothing_is_reached_from_outside_and_the_exper
             return sorted(subprocess.check_output([*outside, sys.executable, "-c", PROBE, address, *ports],
                                                   universal_newlines=True).split())
 
-        with start_launch(tmp_path, 11311, inside, ROS_IP=address) as launch:  # the most open of all settings
+        with start_launch(tmp_path, 11311, inside, ROS_IP=address) as launch:  # the most open setting
             found = [socket for each in sockets_of(launch).values() for socket in each]
             ports = sorted({str(socket[2]) for socket in found if socket[0] == "tcp"})
             assert len(ports) >= 2 * len(NODES)
-            assert reached() == ports  # the probe can succeed
+            assert reached() == ports  # the probe detects open ports
             network.load(inside, nft_rule())
             assert reached() == []
             trial = int(re.findall(r"trial +(\d+)/999", launch.output)[-1])

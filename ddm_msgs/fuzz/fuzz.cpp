@@ -45,13 +45,13 @@ struct Options {
   }
 };
 
-/// A configuration file.
+/// Reads the input as a configuration file.
 void configFile(const std::uint8_t* data, std::size_t size) {
   static const ddm::testing::MemoryFile file;
   file.write(data, size);
   Options options;
   const auto read = [&] {
-    // Some are merged with themselves.
+    // Merges some inputs with themselves.
     const std::vector<std::string> files(size % 4 == 0 ? 2 : 1, file.path());
     ddm::ParamReader reader = ddm::ParamReader::fromFiles(files);
     options = reader.read<Options>("sim");
@@ -71,8 +71,8 @@ void configFile(const std::uint8_t* data, std::size_t size) {
   saved.requireValid();
 }
 
-/// Bytes to an image message, to grey values. Input: size (1 byte), then 1 and a crop (4 bytes) or 0
-/// for none, then the message.
+/// Decodes bytes to an image message and then to grey values. Fuzz input: size (1 byte), then 1 and
+/// a crop (4 bytes) or 0 for no crop, then the message.
 void imageMessage(const std::uint8_t* data, std::size_t size) {
   ddm::testing::FuzzBytes bytes(data, size);
   const int side = bytes.number<std::uint8_t>() % 64;  // 0 is refused

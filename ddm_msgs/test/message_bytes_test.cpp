@@ -1,4 +1,4 @@
-// Tests of messages from bytes: they come back, and what is announced but not there is refused.
+// Tests of messages from bytes: a round trip, and refusal of missing bytes.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_msgs/message_bytes.h"
 
@@ -24,7 +24,7 @@ ddm_msgs::Torque torque() {
   return message;
 }
 
-/// A message as it is on the wire.
+/// The serialised bytes of a message.
 template <class Message>
 std::string bytesOf(const Message& message) {
   std::string bytes(ros::serialization::serializationLength(message), '\0');

@@ -1,4 +1,4 @@
-// Test of what a package is given that needs our messages only: this program is linked like one.
+// Tests which libraries a package loads that needs the DDM messages only.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_msgs/Torque.h>
 #include <ddm_msgs/topics.h>
@@ -11,7 +11,7 @@
 namespace ddm {
 namespace {
 
-/// Names of all files that this process has loaded, libraries of libraries included.
+/// Names of all files that this process has loaded, including libraries of libraries.
 std::string loadedFiles() {
   std::ifstream maps("/proc/self/maps");
   std::ostringstream text;
@@ -23,7 +23,7 @@ TEST(MessagesOnly, LoadNeitherOpenCvNorYamlCppNorOurLibraries) {
   ddm_msgs::Torque torque;
   torque.header.frame_id = topics::kTorque;
   const std::string loaded = loadedFiles();
-  ASSERT_NE(loaded.find("librostime"), std::string::npos);  // what messages do need
+  ASSERT_NE(loaded.find("librostime"), std::string::npos);  // a library that messages need
   for (const char* library : {"opencv", "yaml", "cv_bridge", "libroscpp.so", "libddm"}) {
     EXPECT_EQ(loaded.find(library), std::string::npos) << library;
   }

@@ -1,4 +1,4 @@
-// Fuzz targets of ddm_sim: what reaches robot_node, and the standard input of simulate.
+// Fuzz targets of ddm_sim: the inputs of robot_node, and the standard input of simulate.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_msgs/testing/fuzzing.h>
 #include <ddm_robot/stamp_check.h>
@@ -72,9 +72,9 @@ void act(std::uint8_t kind, ddm::SteadyTime time, ddm::Stamp stamp, FuzzBytes* b
   }
 }
 
-/// What reaches robot_node, in any order and at any time: frames, torques, orders. Input: for each
-/// event its kind (1 byte), the time since the last one (4 bytes), the stamp of an image (8 bytes),
-/// what the kind needs, then what the clock of this machine says (8 bytes).
+/// Inputs of robot_node in any order and at any time: images, torques, service calls. Fuzz input:
+/// for each event its kind (1 byte), the time since the previous event (4 bytes), the stamp of an
+/// image (8 bytes), data of this kind, then the clock of this machine (8 bytes).
 void robotInput(const std::uint8_t* data, std::size_t size) {
   FuzzBytes bytes(data, size);
   ddm::RobotOptions options;

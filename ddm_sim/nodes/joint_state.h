@@ -1,4 +1,4 @@
-// State and torques of a plant as a sensor_msgs/JointState.
+// Converts state and torque of a plant to a sensor_msgs/JointState.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -14,16 +14,18 @@
 
 namespace ddm {
 
-/// The whole state and the torque, in arrays that are empty or as long as `name`:
+/// Makes a message with the complete state and the torque. Each array is empty or has the length of
+/// `name`:
 ///
-///   as many further components as joints, each named "..._per_s":  they are `velocity`
-///   else:  each further component is a `position` after those of the joints, and named as in the
-///          plant's info().state_names
-///   `effort` is the torque where there are as many motors as names, else it is empty
+///   velocity  the components of the state after the joint positions, if there is one for each
+///             joint and all their names end in "_per_s"; otherwise empty
+///   position  the positions of the joints; without velocities also all further components of the
+///             state, with their names in info().state_names as `name`
+///   effort    the torque, if the number of motors equals the number of names; otherwise empty
 ///
-/// So position, then velocity, are always the plant's state.
-/// @param applied  torque of the step that led to the state                   [torqueDim() x 1]
-/// @return         without a stamp
+/// The concatenation of position and velocity is always the state of the plant.
+/// @param applied  torque of the step that led to the state                       [torqueDim() x 1]
+/// @return         message without a stamp
 inline sensor_msgs::JointState jointStateOf(const Plant& plant, const Eigen::VectorXd& applied) {
   const auto toVector = [](const auto& values) {
     return std::vector<double>(values.data(), values.data() + values.size());

@@ -1,4 +1,4 @@
-// Lock-step: simulated time stands still until each image has its torque.
+// Lock-step: simulated time stops until the torque for the image arrives.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <rosgraph_msgs/Clock.h>
 
@@ -18,18 +18,19 @@
 namespace ddm {
 namespace {
 
-/// Shows image t, waits for the torque that carries its stamp, steps, shows image t + 1.
+/// Publishes image t, waits for the torque that carries the stamp of this image, takes a step, and
+/// publishes image t + 1.
 ///
 ///   idle --reset--> image 0 --torque--> image 1 --torque--> ... image num_steps - 1 --torque-->
 ///   idle
 ///
-/// An image that the camera loses is never shown: the plant goes on for another dt under the last
-/// torque, and the stamps have a gap. A torque with another stamp is counted and ignored.
-/// A torque that cannot be applied, or does not come within the watchdog's wall time, ends the
-/// trial: idle until the next reset. /clock never runs backwards: each trial starts later than the
-/// last one ended, with a gap that no reader can take for a step. Ground truth and /clock come ten
-/// milliseconds of wall time after the image, those of all frames in between at once. Stamps are
-/// whole nanoseconds, so equality is exact.
+/// An image that the camera loses is never published: the plant moves for another dt under the last
+/// torque, and the stamps have a gap. A torque with another stamp is counted and ignored. If a
+/// torque is invalid or does not arrive within the watchdog's wall time, the episode ends, and the
+/// node is idle until the next reset. /clock never runs backwards: each episode starts later than
+/// the end of the previous one, with a gap that is longer than a step. Ground truth and /clock are
+/// published ten milliseconds of wall time after the image, together for all images since the last
+/// publication. Stamps are whole nanoseconds, so stamps can be compared for equality.
 class LockstepSim : public SimNode {
  public:
   LockstepSim(ros::NodeHandle nh, std::unique_ptr<Environment> environment,
@@ -38,15 +39,16 @@ class LockstepSim : public SimNode {
         clock_pub_(nh.advertise<rosgraph_msgs::Clock>("/clock", 1, /*latch=*/true)),
         options_(options),
         step_ns_(static_cast<std::uint64_t>(std::llround(this->plant().info().dt * kSecond))),
-        now_ns_(kSecond) {  // not 0, which means "no time yet" to everybody else
+        now_ns_(kSecond) {  // not 0, which ROS treats as "no time yet"
     if (show.frame_rate > 0.0) pace_.emplace(show.frame_rate);
     tell_timer_ = nh.createWallTimer(
         ros::WallDuration(kTellPeriod), [this](const ros::WallTimerEvent&) { tell(); },
         /*oneshot=*/true, /*autostart=*/false);
     tell();
     publishGoal(now());
-    // Ticks instead of one long timer: they stop counting while this process itself is held up, so a
-    // torque that waits in the queue meanwhile is not called missing.
+    // Ticks are used instead of one long timer, because ticks stop while this process itself is
+    // suspended. A torque that waits in the queue during this time is therefore not reported as
+    // missing.
     watchdog_ = nh.createWallTimer(ros::WallDuration(options_.watchdog / kWatchdogTicks),
                                    &LockstepSim::onWatchdogTick, this);
   }
@@ -97,7 +99,7 @@ class LockstepSim : public SimNode {
       }
       now_ns_ += step_ns_;
     } while (!showImage());
-    publishApplied(message);  // after the image, for which the controller waits
+    publishApplied(message);  // after the image, because the controller waits for the image
     ++frame_;
   }
 
@@ -111,16 +113,17 @@ class LockstepSim : public SimNode {
     endTrial();
   }
 
-  /// @return false if the camera has lost the frame
+  /// @return false if the camera has lost the image
   bool showImage() {
-    if (pace_) pace_->sleep();  // nothing else is to be done: whoever has answered is waiting, too
+    if (pace_) pace_->sleep();  // last, when all work of this step is done
     silent_ticks_ = 0;
-    tell_timer_.start();  // does nothing if it runs
+    tell_timer_.start();  // has no effect if the timer is running
     return publishImage(now());
   }
 
-  /// Ground truth and time. No node waits for them, but several wake up for each message: soon is
-  /// soon enough, and cheaper for all frames of a kTellPeriod together.
+  /// Publishes ground truth and time. The control loop does not need these messages, but each
+  /// message wakes up several nodes, so the messages of all images of a kTellPeriod are sent
+  /// together.
   void tell() {
     tell_timer_.stop();
     publishGroundTruth();
@@ -130,7 +133,7 @@ class LockstepSim : public SimNode {
   }
 
   void onWatchdogTick(const ros::WallTimerEvent& /*event*/) {
-    // The first tick after a frame may come at once, so it does not count as time passed.
+    // The first tick after an image may come immediately, so this tick is not counted.
     if (!running_ || ++silent_ticks_ <= kWatchdogTicks) return;
     ROS_ERROR_STREAM("no torque for "
                      << frameName() << " within " << formatDouble(options_.watchdog)
@@ -155,16 +158,17 @@ class LockstepSim : public SimNode {
 
   ros::Publisher clock_pub_;
   SimOptions options_;
-  std::optional<ros::WallRate> pace_;  ///< empty: as fast as torques come
+  std::optional<ros::WallRate> pace_;  ///< empty: no limit of the frame rate
   std::uint64_t step_ns_;              ///< dt [ns]
-  std::uint64_t now_ns_;               ///< simulated time = stamp of the frame on show [ns]
-  bool running_ = false;               ///< a frame is on show and waits for its torque
-  bool first_trial_ = true;            ///< nothing has been shown yet
+  std::uint64_t now_ns_;               ///< simulated time, and stamp of the current image [ns]
+  bool running_ = false;               ///< true while the current image waits for its torque
+  bool first_trial_ = true;            ///< true before the first image
   std::string trial_;                  ///< "trial 3" or "evaluation 3"
   std::uint32_t num_steps_ = 0;
-  std::uint64_t frame_ = 0;    ///< index of the frame on show, among those shown
-  std::uint64_t ignored_ = 0;  ///< torques with another stamp, in this trial
-  int silent_ticks_ = 0;       ///< watchdog ticks since the frame was shown
+  /// Index of the current image among the published images of the episode.
+  std::uint64_t frame_ = 0;
+  std::uint64_t ignored_ = 0;  ///< number of torques with another stamp in this episode
+  int silent_ticks_ = 0;       ///< number of watchdog ticks since the image
   ros::WallTimer watchdog_;
   ros::WallTimer tell_timer_;
 };

@@ -1,4 +1,4 @@
-// Real time: the plant moves by itself every dt, as a robot does.
+// Real time: the plant takes a step every dt of wall time, like a robot.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <actionlib_msgs/GoalID.h>
 #include <std_msgs/Float64.h>
@@ -16,22 +16,23 @@
 namespace ddm {
 namespace {
 
-/// Every dt of wall time: step under the newest torque (zero-order hold), show an image, unless the
-/// camera loses it.
+/// Takes a step in every dt of wall time under the newest torque (zero-order hold), and publishes
+/// an image, unless the camera loses it.
 ///
-/// A torque that comes before the next step acts in the whole of it. It is the answer to the last
-/// image if it carries that stamp: with the step it is published as applied. Any other torque is
-/// late: the image has no answer, and the torque acts unless the one on hold answers a newer image.
+/// A torque that arrives before the next step acts during the whole step. If the torque carries the
+/// stamp of the last image, it is the answer to that image and is published as applied after the
+/// step. Any other torque is late: the image then has no answer, and the late torque acts unless
+/// the held torque answers a newer image.
 ///
-/// Stamps are wall time, all else goes by the monotonic clock, and no clock is published. A torque
-/// acts for two periods at most: without a newer one the motor is switched off. A torque that is
-/// refused switches it off at once, until the next reset, and cancels the trial: as on a robot,
-/// something is wired wrongly. The plant begins at rest; a reset sets the state at any time, and its
-/// num_steps has no effect.
+/// Stamps are wall time, timers use the monotonic clock, and no clock is published. A torque acts
+/// for two periods at most; without a newer torque the motor is then switched off. A refused torque
+/// switches the motor off immediately until the next reset, and cancels the episode, because a
+/// refused torque means that nodes are connected wrongly; robot_node does the same. The plant
+/// begins at rest. A reset sets the state at any time, and its num_steps has no effect.
 ///
-/// It is also the simulated robot of robot_check.launch, with what robot_node needs of a robot: while
-/// no node publishes torques it follows efforts, each of which is a torque without an image, and the
-/// service `bring_to_start` resets it.
+/// This node is also the simulated robot of robot_check.launch and has the interface that
+/// robot_node expects of a robot. While no node publishes torques, the node follows efforts, which
+/// are torques without an image. The service `bring_to_start` resets the simulated robot.
 class RealtimeSim : public SimNode {
  public:
   RealtimeSim(ros::NodeHandle nh, std::unique_ptr<Environment> environment)
@@ -53,19 +54,19 @@ class RealtimeSim : public SimNode {
   }
 
  private:
-  // Without a newer torque the motor is off from the third step on.
+  // Without a newer torque, the motor is off from the third step on.
   static constexpr int kMaxStepsHeld = 2;
   static constexpr int kQueueSize = 10;
 
-  static ros::Time wallNow() {  // ros::Time::now() would go by a clock that somebody publishes
+  static ros::Time wallNow() {  // unlike ros::Time::now(), independent of a published /clock
     const ros::WallTime now = ros::WallTime::now();
     return ros::Time(now.sec, now.nsec);
   }
 
   ros::Time beginTrial(const ddm_msgs::Reset::Request& request) override {
     stopped_ = false;
-    switchMotorOff();  // the torque on hold was meant for another state
-    timer_.stop();     // stop and start, so that the first step is a whole one
+    switchMotorOff();  // because the held torque was planned for another state
+    timer_.stop();     // restarts the period, so that the first step has the full length
     timer_.start();
     const ros::Time stamp = wallNow();
     publishGoal(stamp);
@@ -92,7 +93,7 @@ class RealtimeSim : public SimNode {
     stopped_ = true;
     ROS_ERROR_STREAM(
         reason << ". The motor is off until the next reset, and the trial is cancelled");
-    cancel_pub_.publish(actionlib_msgs::GoalID());  // without an id: all goals
+    cancel_pub_.publish(actionlib_msgs::GoalID());  // without an id: cancels all goals
   }
 
   void onEffort(const std_msgs::Float64& effort) { follow({effort.data}); }
@@ -128,7 +129,7 @@ class RealtimeSim : public SimNode {
     publishGroundTruth();
   }
 
-  /// The time in which the last image could be answered is over.
+  /// Publishes the torque that acted after the last image, when the time for its answer is over.
   void settleAnswer() {
     if (shown_) publishApplied(answer_);
   }
@@ -143,13 +144,13 @@ class RealtimeSim : public SimNode {
     showImage(wallNow());
   }
 
-  Eigen::VectorXd held_;          ///< newest torque, zero when the motor is off
-  ros::Time held_stamp_;          ///< of the image that held_ answers, zero when the motor is off
-  int steps_held_ = 0;            ///< steps taken under held_
-  bool shown_ = false;            ///< the camera has not lost the last image
-  ddm_msgs::Torque answer_;       ///< to the last image so far; without a torque if there is none
-  bool stopped_ = false;          ///< by a torque that was refused
-  std::uint32_t num_starts_ = 0;  ///< calls of bring_to_start
+  Eigen::VectorXd held_;     ///< newest torque, zero when the motor is off
+  ros::Time held_stamp_;     ///< stamp of the image that held_ answers, zero when the motor is off
+  int steps_held_ = 0;       ///< number of steps under held_
+  bool shown_ = false;       ///< true if the camera has not lost the last image
+  ddm_msgs::Torque answer_;  ///< answer to the last image so far; without values if there is none
+  bool stopped_ = false;     ///< true after a refused torque, until the next reset
+  std::uint32_t num_starts_ = 0;  ///< number of calls of bring_to_start
   ros::Publisher cancel_pub_;
   ros::Subscriber effort_sub_;
   ros::ServiceServer start_server_;

@@ -1,4 +1,4 @@
-// robot_node: a camera and motors of yours instead of the simulator.
+// robot_node: camera, torques and motors.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot_node.h"
 
@@ -18,9 +18,11 @@ namespace ddm {
 namespace {
 
 constexpr int kQueue = 10;
-constexpr int kRecordedQueue = 1000;             // a recorder that is slow must not lose one
-constexpr std::chrono::seconds kFreshCamera(1);  // one that is silent for longer is not there
-const ros::WallDuration kEffortPeriod(0.01);     // torques are sent and timeouts checked so often
+constexpr int kRecordedQueue = 1000;  // long enough that a slow recorder loses no message
+// a camera without an image for longer is not available
+constexpr std::chrono::seconds kFreshCamera(1);
+// Period at which efforts are sent and time limits are checked.
+const ros::WallDuration kEffortPeriod(0.01);
 const ros::WallDuration kDiagnosisPeriod(1.0);
 const ros::WallDuration kImageLogPeriod(5.0);
 
@@ -72,12 +74,12 @@ RobotNode::RobotNode(ros::NodeHandle nh, ros::NodeHandle pnh, int image_size,
       image_transport::TransportHints("raw", ros::TransportHints().tcpNoDelay(), pnh));
   timer_ = nh.createSteadyTimer(kEffortPeriod, &RobotNode::onTick, this);
   diagnosis_timer_ = nh.createSteadyTimer(kDiagnosisPeriod, [this](const ros::SteadyTimerEvent&) {
-    guarded([this] { updater_.force_update(); });  // update() goes by a clock that may be set
+    guarded([this] { updater_.force_update(); });  // update() uses a clock that can be set
   });
   enable_server_ = nh.advertiseService(topics::kEnable, &RobotNode::onEnable, this);
   take_goal_server_ = nh.advertiseService(topics::kTakeGoal, &RobotNode::onTakeGoal, this);
   reset_done_server_ = nh.advertiseService(topics::kResetDone, &RobotNode::onResetDone, this);
-  // Last: whoever sees the service finds everything else in place.
+  // The service comes last, so that all topics exist when another node finds it.
   reset_server_ = nh.advertiseService(topics::kReset, &RobotNode::onReset, this);
 }
 
@@ -91,8 +93,8 @@ void RobotNode::stop(const std::string& reason) {
   publishEffort();
 }
 
-/// Does what a message or the time asks for. roscpp ends a process in which a callback throws, and
-/// the motors would keep their torque.
+/// Runs a callback and stops the motors if it throws. roscpp ends a process in which a callback
+/// throws, and the motors would keep their last torque.
 template <class Work>
 void RobotNode::guarded(const Work& work) {
   try {
@@ -102,8 +104,8 @@ void RobotNode::guarded(const Work& work) {
   }
 }
 
-/// What the controller sees of an image of the camera.
-/// @throws std::invalid_argument for one that cannot be used
+/// Converts a camera image to the image for the controller.
+/// @throws std::invalid_argument if the image cannot be used
 sensor_msgs::Image RobotNode::shown(const sensor_msgs::Image& image) const {
   const ImageCrop crop{options_.crop[0], options_.crop[1], options_.crop[2], options_.crop[3]};
   return encodeImage(decodeImage(image, image_size_, crop), image_size_, image.header.stamp,
@@ -133,7 +135,7 @@ void RobotNode::onImage(const sensor_msgs::ImageConstPtr& image) {
     sensor_msgs::Image out;
     std::string problem;
     try {
-      out = shown(*image);  // without the lock, because it takes a while
+      out = shown(*image);  // without the lock, because the conversion takes time
     } catch (const std::exception& e) {
       problem = e.what();
     }
@@ -142,13 +144,15 @@ void RobotNode::onImage(const sensor_msgs::ImageConstPtr& image) {
       if (!problem.empty()) return refuseImage(problem);
       image_problem_.clear();
       settle(true);
-      gate_.showImage(stamps_.taken(), stamp);  // before anybody can answer it
+      // Before publication, so that the answer cannot arrive earlier.
+      gate_.showImage(stamps_.taken(), stamp);
     }
     image_pub_.publish(out);
   });
 }
 
-/// Why the crop would show something else than before; empty if it does not.
+/// Describes a change of size or encoding of the images, which would make the crop show another
+/// part of the scene; empty if nothing has changed.
 std::string RobotNode::formatProblem(const sensor_msgs::Image& image) const {
   if (camera_format_.empty() || formatOf(image) == camera_format_) return "";
   return "the images have changed from " + camera_format_ + " to " + formatOf(image) +
@@ -181,7 +185,7 @@ void RobotNode::onTorque(const ros::MessageEvent<const ddm_msgs::Torque>& event)
       acting_ = torque;
       acting_.torque = gate_.target();
     }
-    if (!gate_.armed()) cancelTrial();  // it has begun without the motors
+    if (!gate_.armed()) cancelTrial();  // because the episode has begun while the motors are off
     std_msgs::Float64 latency;
     latency.data = toSeconds(arrival - stamp);
     latency_pub_.publish(latency);
@@ -202,7 +206,7 @@ void RobotNode::onJointStates(const ros::MessageEvent<const sensor_msgs::JointSt
     report.velocities = joints.velocity;
     const std::lock_guard<std::mutex> lock(mutex_);
     gate_.takeJoints(report);
-    if (was_armed_ && !gate_.armed()) publishEffort();  // not at each report
+    if (was_armed_ && !gate_.armed()) publishEffort();  // only after a stop, not at each report
   });
 }
 
@@ -230,10 +234,12 @@ void RobotNode::lookAtPeers() {
   gate_.setListeners(effort_.numSubscribers());
 }
 
-/// To be called whenever something may have changed.
+/// Publishes the effort and everything that depends on the state of the gate. Call this function
+/// after each change.
 void RobotNode::publishEffort() {
   const std::vector<double>& effort = gate_.effort(steadyNow());
-  if (!gate_.armed()) routine_moves_ = false;  // a stop takes the motors from the reset service
+  // Because a stop takes the motors from the reset service.
+  if (!gate_.armed()) routine_moves_ = false;
   if (!routine_moves_) effort_.publish(effort);
   if (gate_.state() != TorqueGate::State::kFollowing) settle(gate_.heldForAStep());
   for (const Stamp& stamp : gate_.takeUnanswered()) {
@@ -244,9 +250,9 @@ void RobotNode::publishEffort() {
   reportState();
 }
 
-/// Reports which torque acted as the answer to the last answered image, at the end of its step.
-/// @param acted  whether it acted to the end of the step. If the motors got zero before, nothing can
-///               be learned from the step
+/// Publishes the torque that acted after the last answered image, at the end of its step.
+/// @param acted  whether the torque acted until the end of the step. If not, an empty torque is
+///         published, and the sample is not used for learning
 void RobotNode::settle(bool acted) {
   if (acting_.torque.empty()) return;
   if (!acted) acting_.torque.clear();
@@ -282,9 +288,9 @@ void RobotNode::reportState() {
   }
 }
 
-/// The trial under way, or about to begin. There may be none.
+/// Cancels the current episode or the one about to begin, if there is one.
 void RobotNode::cancelTrial() {
-  cancel_pub_.publish(actionlib_msgs::GoalID());  // without an id: all goals
+  cancel_pub_.publish(actionlib_msgs::GoalID());  // without an id: cancels all goals
 }
 
 void RobotNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
@@ -311,14 +317,14 @@ void RobotNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
 
 int main(int argc, char** argv) {
   const auto run = [](const auto& nh, const auto& pnh, ddm::ParamReader* params) {
-    params->ignore("image_transport");    // read by image_transport itself
-    params->ignore("diagnostic_period");  // read by diagnostic_updater itself
+    params->ignore("image_transport");    // image_transport itself reads it
+    params->ignore("diagnostic_period");  // diagnostic_updater itself reads it
     const auto image = params->read<ddm::ImageOptions>("image");
     const auto robot = params->read<ddm::RobotOptions>("robot");
     params->requireValid();
     ROS_INFO_STREAM("robot_node runs with\n" << ddm::toYaml(robot));
     ddm::RobotNode node(nh, pnh, image.size, robot);
-    ros::AsyncSpinner spinner(4);  // a reset waits in one of them
+    ros::AsyncSpinner spinner(4);  // one of the threads may be blocked in a reset
     spinner.start();
     const auto stop = [&node] {
       node.stopMotors("this node ends");

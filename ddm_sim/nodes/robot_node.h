@@ -1,4 +1,4 @@
-// robot_node: a camera and motors of yours instead of the simulator.
+// robot_node: connects a real camera and real motors to the DDM nodes, in place of the simulator.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -30,30 +30,32 @@ inline Stamp toStamp(const ros::Time& time) {
 
 inline SteadyTime steadyNow() { return std::chrono::steady_clock::now(); }
 
-/// Size and encoding, for messages.
+/// Describes size and encoding of an image, for messages.
 inline std::string formatOf(const sensor_msgs::Image& image) {
   return std::to_string(image.width) + "x" + std::to_string(image.height) + " " + image.encoding;
 }
 
-/// Shows the controller an image every dt and hands its torques to the motors through a TorqueGate.
-/// A trial in which the motors are stopped, or that begins while they are, is cancelled: its
-/// torques do not act, so nothing is to be learned from it.
+/// Publishes an image to the controller every dt, and passes its torques to the motors through a
+/// TorqueGate. If the motors are off at the start of an episode, or are switched off during it, the
+/// node cancels the episode: its torques do not act, so its samples are useless for learning.
 ///
-/// Needs a spinner with several threads: a reset may wait for a person while all else goes on.
-/// Implementation: robot_node.cpp has camera and motors, robot_reset.cpp what people and Algorithm 1
-/// ask for: `enable`, `take_goal` and `reset`.
+/// Needs a spinner with several threads, because a reset may wait for a person while all other
+/// callbacks continue.
+/// Implementation: robot_node.cpp contains camera and motors; robot_reset.cpp contains the services
+/// `enable`, `take_goal`, `reset` and `reset_done`.
 class RobotNode {
  public:
-  /// @param pnh  private: the user's choice of an image transport
-  /// @throws std::invalid_argument if the camera's topic is the one that this node publishes on,
-  ///         or the goal cannot be read
+  /// @param pnh  private node handle, with the user's choice of an image transport
+  /// @throws std::invalid_argument if the topic of the camera is the topic that this node
+  ///         publishes, or the goal image cannot be read
   RobotNode(ros::NodeHandle nh, ros::NodeHandle pnh, int image_size, const RobotOptions& options);
 
-  /// Zero torque, now.
+  /// Switches the motors off immediately.
   void stopMotors(const std::string& reason);
 
  private:
-  /// What the motors must be before a reset goes on.
+  /// State of the motors that a reset requires before it continues. kAny: any state; kOn: on; kFit:
+  /// on and without a fault.
   enum class Motors { kAny, kOn, kFit };
 
   template <class Work>
@@ -78,7 +80,7 @@ class RobotNode {
   std::string askPerson(const ros::SteadyTime& deadline);
   void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
 
-  // These require the lock.
+  // The caller must hold mutex_.
   void stop(const std::string& reason);
   bool seesCamera() const;
   std::string formatProblem(const sensor_msgs::Image& image) const;
@@ -91,25 +93,28 @@ class RobotNode {
   void restartImages();
   std::string stepProblem();
 
-  LogThread log_;  // a terminal that is stopped must not be in the way of a stop
+  LogThread log_;  // a stopped terminal must not delay a stop of the motors
   const int image_size_;
   const RobotOptions options_;
   const std::string reset_service_;  // resolved name; empty: a person resets the robot
   NodeWatch controller_watch_;
 
-  std::mutex mutex_;  // guards what callbacks change, below
+  std::mutex mutex_;  // guards the members that callbacks change, from gate_ to worst_latency_
   TorqueGate gate_;
   StampCheck stamps_;
   ImagePicker picker_;
-  sensor_msgs::ImageConstPtr image_;  // the newest of the camera
+  sensor_msgs::ImageConstPtr image_;  // newest image of the camera
   SteadyTime image_arrival_;
-  Stamp image_arrival_clock_{0};  // the same by the clock of this machine
+  Stamp image_arrival_clock_{0};  // image_arrival_ by the clock of this machine
   std::string image_problem_;     // why the newest image cannot be used
-  std::string camera_format_;     // size and encoding that the crop was used with; empty: not yet
+  // Size and encoding of the images that the crop was first used with; empty before.
+  std::string camera_format_;
   bool has_goal_ = false;
-  bool routine_runs_ = false;   // the user's reset service has been called and has not answered
-  bool routine_moves_ = false;  // the service has the motors, and no effort is published
-  ddm_msgs::Torque acting_;     // acts now and is not yet reported; empty: all are reported
+  bool routine_runs_ = false;  // true while a call of the user's reset service is open
+  // True while the reset service controls the motors and this node publishes no effort.
+  bool routine_moves_ = false;
+  // Torque that acts now and has not been reported yet; empty if all torques have been reported.
+  ddm_msgs::Torque acting_;
   ros::SteadyTime last_image_log_;
   bool was_armed_ = false;
   std::string last_state_;
@@ -118,7 +123,8 @@ class RobotNode {
   double worst_latency_ = 0.0;  // since the last diagnosis [s]
 
   std::mutex one_reset_;
-  std::atomic<bool> person_asked_{false};  // to bring the robot to its initial state
+  // True while the node waits for a person to bring the robot to its initial state.
+  std::atomic<bool> person_asked_{false};
   image_transport::ImageTransport transport_;
   image_transport::Publisher image_pub_;
   ros::Publisher goal_pub_;
@@ -130,7 +136,7 @@ class RobotNode {
   ros::Publisher enabled_pub_;
   image_transport::Subscriber camera_sub_;
   ros::Subscriber torque_sub_;
-  ros::Subscriber joints_sub_;  // only where joints have limits
+  ros::Subscriber joints_sub_;  // only if joints have limits
   ros::Subscriber trial_end_sub_;
   ros::SteadyTimer timer_;
   diagnostic_updater::Updater updater_;

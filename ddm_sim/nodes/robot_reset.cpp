@@ -1,4 +1,4 @@
-// robot_node: its services, by which people and Algorithm 1 enable the motors, show a goal, and reset.
+// robot_node: the services that enable the motors, take the goal image and reset the robot.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_common/image_codec.h>
 #include <ddm_common/topic_peers.h>
@@ -18,8 +18,9 @@
 namespace ddm {
 namespace {
 
-constexpr double kStepTolerance = 0.1;     // of dt
-constexpr double kMaxStepTolerance = 0.5;  // of dt: beyond, each step would count as a gap
+constexpr double kStepTolerance = 0.1;  // relative to dt; a larger error gives a warning
+// Relative to dt; with a larger error, each step would count as a gap.
+constexpr double kMaxStepTolerance = 0.5;
 constexpr char kGoalInTrial[] = "a trial is under way, and it has a goal: wait for its end";
 const ros::WallDuration kPollPeriod(0.05);
 const ros::WallDuration kRemindPeriod(10.0);
@@ -29,7 +30,8 @@ double timeLeft(const ros::SteadyTime& deadline) {
 }
 bool timeIsLeft(const ros::SteadyTime& deadline) { return ros::ok() && timeLeft(deadline) > 0.0; }
 
-/// A problem without its numbers: the same problem with another value need not be logged again.
+/// Removes the digits of a problem, because a problem that only changes its numbers is not logged
+/// again.
 std::string withoutNumbers(std::string text) {
   text.erase(std::remove_if(text.begin(), text.end(),
                             [](unsigned char c) { return std::isdigit(c) != 0; }),
@@ -76,7 +78,7 @@ void RobotNode::loadGoal() {
   publishGoal(encodeImage(decodeImage(picture, image_size_), image_size_, ros::Time::now(), ""));
 }
 
-/// @throws std::runtime_error in a trial
+/// @throws std::runtime_error during an episode
 void RobotNode::publishGoal(const sensor_msgs::Image& goal) {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (gate_.inTrial()) throw std::runtime_error(kGoalInTrial);
@@ -101,7 +103,7 @@ bool RobotNode::onTakeGoal(std_srvs::Trigger::Request& /*request*/,
     if (!response.message.empty()) return true;
     image = image_;
   }
-  try {  // without the lock: a disk may be slow, and must not be in the way of a stop
+  try {  // without the lock, because a slow disk must not delay a stop
     const sensor_msgs::Image goal = shown(*image);
     if (!options_.goal_file.empty()) writePicture(options_.goal_file, goal);
     publishGoal(goal);
@@ -139,8 +141,9 @@ bool RobotNode::onReset(ddm_msgs::Reset::Request& /*request*/,
     gate_.beginReset();
     publishEffort();
   }
-  // The goal first: to show it, the robot has to leave its initial state. A person who brings the
-  // robot to its initial state reaches in, so the motors come last. A service needs them first.
+  // The goal image comes first, because the robot must leave its initial state to show the goal. A
+  // person reaches into the workspace to move the robot to its initial state, so the motors are
+  // switched on after that. A reset service needs the motors before.
   const bool uses_motors = !reset_service_.empty();
   std::string problem = waitFor(uses_motors ? Motors::kOn : Motors::kAny, deadline);
   if (problem.empty()) problem = moveToInitialState(deadline);
@@ -159,15 +162,16 @@ bool RobotNode::onReset(ddm_msgs::Reset::Request& /*request*/,
   return true;
 }
 
-/// Forgets stamps and rate of the images so far.
+/// Forgets the stamps of all previous images; the estimate of the camera's rate is kept.
 void RobotNode::restartImages() {
   stamps_.restart();
   picker_.restart();
 }
 
-/// Why no trial can begin with the images of the camera; empty if it can, perhaps with a warning.
+/// Describes why no episode can begin at the frame rate of the camera; empty if it can, perhaps
+/// after a warning.
 std::string RobotNode::stepProblem() {
-  const double step = picker_.step();  // 0: not known
+  const double step = picker_.step();  // 0 if the step is not known yet
   const double error = std::abs(step - options_.dt);
   if (step == 0.0 || error <= kStepTolerance * options_.dt) return "";
   std::ostringstream text;
@@ -204,8 +208,9 @@ bool RobotNode::onResetDone(std_srvs::Trigger::Request& /*request*/,
   return true;
 }
 
-/// Has the user's service move the robot, which needs the motors. A stop takes them from it.
-/// Services are called in threads of their own, because a stopped master may never answer.
+/// Calls the user's service, which moves the robot and needs the motors; a stop takes the motors
+/// away from the service. Services are called in threads of their own, because a stopped master may
+/// never answer.
 std::string RobotNode::callResetService(const ros::SteadyTime& deadline) {
   const std::string service = "service " + reset_service_;
   const auto exists = [name = reset_service_] {
@@ -251,8 +256,8 @@ std::string RobotNode::callResetService(const ros::SteadyTime& deadline) {
          ": look at the output of its node";
 }
 
-/// Waits until nothing is missing that a trial needs.
-/// @return what has not come in time; empty if nothing is missing
+/// Waits until all requirements of an episode are met.
+/// @return the requirement that was not met in time; empty if all are met
 std::string RobotNode::waitFor(Motors motors, const ros::SteadyTime& deadline) {
   std::string told;
   ros::SteadyTime last_told;
@@ -270,24 +275,24 @@ std::string RobotNode::waitFor(Motors motors, const ros::SteadyTime& deadline) {
   }
 }
 
-/// What a trial cannot begin without, the first thing first; empty if nothing is missing.
+/// Returns the first unmet requirement of an episode; empty if all are met.
 std::string RobotNode::missing(Motors motors) {
   std::unique_lock<std::mutex> lock(mutex_);
   if (!seesCamera()) {
-    lock.unlock();  // the master may be slow, and must not be in the way of a stop
+    lock.unlock();  // because a slow answer of the master must not delay a stop
     return "no image from the camera, " +
            describeImagePublishers(camera_sub_.getTopic(), "camera:=");
   }
   std::string problem = stamps_.compare(image_arrival_clock_, toStamp(image_->header.stamp));
   if (problem.empty()) problem = image_problem_;
   if (!problem.empty()) {
-    restartImages();  // the clocks may be set while the trial waits
+    restartImages();  // because the clocks may be corrected while the node waits
     return problem;
   }
   if (!has_goal_) return "no goal image: bring the robot to its goal and call service take_goal";
   if (motors == Motors::kAny) return "";
   if (!gate_.armed()) return gate_.describe();
-  // The reset service may bring a joint back that is beyond its limits.
+  // A joint may be beyond its limits before the reset service moves the robot.
   return motors == Motors::kFit ? gate_.fault(steadyNow()) : "";
 }
 

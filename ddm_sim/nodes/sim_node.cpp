@@ -1,4 +1,4 @@
-// The plant behind topics: what lock-step and real time have in common.
+// The ROS interface of a simulated plant: the common part of lock-step and real time.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim_node.h"
 
@@ -19,8 +19,9 @@ namespace ddm {
 namespace {
 
 constexpr int kQueueSize = 10;
-constexpr int kLongQueueSize = 1000;  // a recorder that is slow must not lose one
-constexpr double kRubbish = 1000.0;   // times max_torque: no command, but an error
+constexpr int kLongQueueSize = 1000;  // long enough that a slow recorder loses no message
+// Multiple of max_torque. A larger torque is an error of the sender and is refused.
+constexpr double kRubbish = 1000.0;
 
 Eigen::VectorXd toEigen(const std::vector<double>& values) {
   return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
@@ -44,7 +45,7 @@ SimNode::SimNode(ros::NodeHandle nh, std::unique_ptr<Environment> environment)
             handleTorque(*event.getMessage(), event.getPublisherName(), torque_sub_.getTopic());
           }),
       ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay());
-  // Last: whoever sees the service finds everything else in place.
+  // The service comes last, so that all topics exist when another node finds it.
   reset_server_ = nh.advertiseService(topics::kReset, &SimNode::onReset, this);
 }
 
@@ -63,7 +64,7 @@ bool SimNode::publishImage(const ros::Time& stamp) {
   image_pub_.publish(imageMessage(*seen_, stamp, optical_frame_));
   untold_.push_back(jointStateOf(plant(), environment_->applied()));
   untold_.back().header.stamp = stamp;
-  view_.publish(*seen_, stamp);  // last: whoever plans does not wait for what people see
+  view_.publish(*seen_, stamp);  // last, so that the view does not delay the controller
   return true;
 }
 
@@ -100,7 +101,7 @@ bool SimNode::onReset(ddm_msgs::Reset::Request& request, ddm_msgs::Reset::Respon
   } catch (const std::invalid_argument& e) {
     response.message = e.what();
     ROS_WARN_STREAM("reset refused, nothing has changed: " << response.message);
-  } catch (const std::exception& e) {  // of a renderer, for example: roscpp would tell nobody why
+  } catch (const std::exception& e) {  // such as a rendering error
     response.message =
         "the plant failed in the reset, no trial has begun: " + std::string(e.what());
     ROS_ERROR_STREAM(response.message);
@@ -119,7 +120,7 @@ void SimNode::handleTorque(const ddm_msgs::Torque& message, const std::string& p
   torqueRefused(message.header.stamp, reason.str());
 }
 
-/// @return empty if the motor may follow the torque
+/// @return the rule that the torque breaks; empty if the torque is valid
 std::string SimNode::brokenRule(const Eigen::VectorXd& torque) const {
   if (torque_sub_.getNumPublishers() > 1) {
     return "only one node may drive the motor: stop the others, " +

@@ -1,4 +1,4 @@
-// The plant behind topics: what lock-step and real time have in common.
+// The ROS interface of a simulated plant: the common part of lock-step and real time.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -20,8 +20,9 @@
 
 namespace ddm {
 
-/// Answers `reset`, refuses torques that no motor could follow, and hands the others to the mode.
-/// Made for a single-threaded spinner: no callback runs before the object is complete.
+/// Answers `reset`, refuses invalid torques, and passes valid torques to the derived class
+/// (lock-step or real time). Made for a single-threaded spinner: no callback runs before the
+/// construction is complete.
 class SimNode {
  public:
   virtual ~SimNode() = default;
@@ -29,31 +30,34 @@ class SimNode {
   SimNode& operator=(const SimNode&) = delete;
 
  protected:
-  /// @param nh  its namespace holds the topics
+  /// @param nh  node handle whose namespace contains the topics
   SimNode(ros::NodeHandle nh, std::unique_ptr<Environment> environment);
 
-  /// One time step.
+  /// Moves the plant by one time step.
   /// @return false if the plant has no next state; the reason has been logged
   bool advance(const Eigen::VectorXd& torque);
 
-  /// The image of this time step. publishGroundTruth() publishes the rest.
-  /// @return false if the camera has lost the image: nothing of this time step is published
+  /// Publishes the image of this time step. publishGroundTruth() publishes the other data of the
+  /// step.
+  /// @return false if the camera has lost the image; nothing of this time step is then published
   bool publishImage(const ros::Time& stamp);
 
-  /// Ground truth of the images since the last call, which it keeps in memory until then.
+  /// Publishes the ground truth of all images since the last call; the ground truth is kept in
+  /// memory until then.
   void publishGroundTruth();
 
-  /// What acted as the answer to an image: this torque, as far as the motor can do it. To be called
-  /// once for each image that was shown.
-  /// @param answer  without a torque if none acted in time
+  /// Publishes the torque that acted after an image, saturated at the limits of the motor. Call
+  /// this function once for each published image.
+  /// @param answer  torque with the stamp of the image; without values if no torque acted in time
   void publishApplied(ddm_msgs::Torque answer) const;
 
-  /// The goal of this run, unless it looks like the last one: the answer to `reset` has the stamp of
-  /// the goal that counts.
+  /// Publishes the goal image of this episode, unless it equals the goal image that was published
+  /// last. The answer to `reset` contains the stamp of the valid goal image.
   void publishGoal(const ros::Time& stamp);
 
-  /// Checks a torque as if it had come on the topic `torque`, and hands it to the mode.
-  /// @param topic  that the torque came on, for messages
+  /// Checks a torque like one that arrives on the topic `torque`, and passes it to the derived
+  /// class.
+  /// @param topic  topic on which the torque arrived, for messages
   void handleTorque(const ddm_msgs::Torque& message, const std::string& publisher,
                     const std::string& topic);
   bool onReset(ddm_msgs::Reset::Request& request, ddm_msgs::Reset::Response& response);
@@ -64,23 +68,25 @@ class SimNode {
  private:
   std::string brokenRule(const Eigen::VectorXd& torque) const;
 
-  /// The plant has been set to its initial state: show the first image.
-  /// @return stamp of that image
+  /// Begins an episode after the plant has been set to its initial state: publishes the first
+  /// image.
+  /// @return stamp of the first image
   virtual ros::Time beginTrial(const ddm_msgs::Reset::Request& request) = 0;
 
-  /// A torque that the plant can take.
+  /// Handles a valid torque.
   virtual void takeTorque(const ddm_msgs::Torque& message, const Eigen::VectorXd& torque,
                           const std::string& publisher) = 0;
 
-  /// A torque that was refused; `reason` names its publisher and value, for the log.
+  /// Handles a refused torque; `reason` contains its publisher and its value, for the log.
   virtual void torqueRefused(const ros::Time& stamp, const std::string& reason) = 0;
 
   std::unique_ptr<Environment> environment_;
-  std::optional<Picture> seen_;  ///< the image of this time step; empty if the camera has lost it
-  Picture goal_image_;           ///< as published last
-  ros::Time goal_stamp_;         ///< of goal_image_
-  std::vector<sensor_msgs::JointState> untold_;  ///< of images since the last publishGroundTruth()
-  std::string optical_frame_;                    ///< of the images, in tf
+  std::optional<Picture> seen_;  ///< image of this time step; empty if the camera has lost it
+  Picture goal_image_;           ///< goal image that was published last
+  ros::Time goal_stamp_;         ///< stamp of goal_image_
+  /// Ground truth of the images since the last publishGroundTruth().
+  std::vector<sensor_msgs::JointState> untold_;
+  std::string optical_frame_;  ///< tf frame of the images
   ros::Publisher goal_pub_;
   ros::Publisher ground_truth_pub_;
   ros::Publisher applied_pub_;
@@ -90,12 +96,14 @@ class SimNode {
   ros::Subscriber torque_sub_;
 };
 
-/// Simulated time stands still until each image has its torque, see lockstep_sim.cpp.
+/// Makes a simulator in lock-step: simulated time stops until the torque for the image arrives, see
+/// lockstep_sim.cpp.
 std::unique_ptr<SimNode> makeLockstepSim(const ros::NodeHandle& nh,
                                          std::unique_ptr<Environment> environment,
                                          const SimOptions& options, const ShowOptions& show);
 
-/// The plant moves by itself, as a robot does, see realtime_sim.cpp.
+/// Makes a simulator in real time: the plant moves without waiting for torques, like a robot, see
+/// realtime_sim.cpp.
 std::unique_ptr<SimNode> makeRealtimeSim(const ros::NodeHandle& nh,
                                          std::unique_ptr<Environment> environment);
 

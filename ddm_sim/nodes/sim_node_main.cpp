@@ -1,4 +1,4 @@
-// sim_node: a simulated plant with a camera and a motor.
+// sim_node: a simulated plant with camera and motors as a ROS node.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_common/run_node.h>
 #include <ddm_plant_plugin/plant_config.h>

@@ -1,4 +1,4 @@
-// What people and tools get of the cameras of a plant: a large picture, camera_info, tf.
+// Publishes camera data for people and tools: a large image, camera_info, tf.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -21,11 +21,12 @@
 
 namespace ddm {
 
-/// A pinhole without distortion, in the camera's optical frame; without a stamp.
+/// Message of a pinhole camera without distortion, in its optical frame; without a stamp.
 ///
 ///   f = height / 2 / tan(fovy / 2),   c = ((width - 1) / 2, (height - 1) / 2)
 ///
-/// because the middle of the first pixel is (0, 0).
+/// The offset of 1/2 pixel follows from the convention that the first pixel has its centre at
+/// (0, 0).
 inline sensor_msgs::CameraInfo cameraInfoOf(const CameraModel& camera) {
   const double f = camera.focalLength();
   const double cx = 0.5 * (camera.width - 1);
@@ -42,7 +43,7 @@ inline sensor_msgs::CameraInfo cameraInfoOf(const CameraModel& camera) {
   return info;
 }
 
-/// The optical frame in the frame "world"; without a stamp.
+/// Pose of the optical frame in the frame "world"; without a stamp.
 /// @pre the camera is fixed
 inline geometry_msgs::TransformStamped opticalFrameOf(const CameraModel& camera) {
   const Eigen::Quaterniond rotation = Eigen::Quaterniond(camera.rotation).normalized();
@@ -59,12 +60,12 @@ inline geometry_msgs::TransformStamped opticalFrameOf(const CameraModel& camera)
   return frame;
 }
 
-/// The view is drawn while somebody subscribes, and never else: it costs many times more than the
-/// learner's picture. A plant without a view shows people what its camera shows, and a plant without
-/// a real camera has no camera_info and no frame in tf.
+/// Renders the view only while a node subscribes, because the view costs many times more than the
+/// learner's image. If the plant has no view, the camera image is published instead. A plant
+/// without a pinhole camera has no camera_info and no tf frame.
 class ViewPublisher {
  public:
-  /// @param nh     its namespace holds the topics
+  /// @param nh     node handle whose namespace contains the topics
   /// @param plant  must outlive this object
   ViewPublisher(ros::NodeHandle nh, const Plant& plant)
       : plant_(plant), has_view_(plant.viewModel().has_value()) {
@@ -85,9 +86,10 @@ class ViewPublisher {
     view_ = image_transport::ImageTransport(nh).advertise(topics::kView, kViewQueueSize);
   }
 
-  /// The view of the present state of the plant, and camera_info for those who want one with each
-  /// image. A view that cannot be drawn ends the views, not the trial.
-  /// @param photograph  what the camera shows of the state
+  /// Publishes the view of the current state, and camera_info with the stamp of the image for nodes
+  /// that subscribe to it. If the view cannot be rendered, the node stops publishing views and the
+  /// episode continues.
+  /// @param photograph  image of the camera, for plants without a view
   void publish(const Picture& photograph, const ros::Time& stamp) {
     for (Info& info : infos_) info.publish(stamp);
     if (view_.getNumSubscribers() == 0) return;
@@ -101,7 +103,7 @@ class ViewPublisher {
   }
 
  private:
-  /// The camera_info of one camera.
+  /// camera_info of one camera.
   struct Info {
     ros::Publisher publisher;
     sensor_msgs::CameraInfo message;
@@ -113,14 +115,15 @@ class ViewPublisher {
     }
   };
 
-  static constexpr int kViewQueueSize = 2;  // a view is large, and an old one worth nothing
+  // The queue is short because views are large and an old view is useless.
+  static constexpr int kViewQueueSize = 2;
 
   const Plant& plant_;
   bool has_view_;
-  std::string frame_;  ///< of the view
+  std::string frame_;  ///< tf frame of the view
   std::vector<Info> infos_;
   image_transport::Publisher view_;
-  std::optional<tf2_ros::StaticTransformBroadcaster> tf_;  ///< none where no camera is fixed
+  std::optional<tf2_ros::StaticTransformBroadcaster> tf_;  ///< empty if no camera is fixed
 };
 
 }  // namespace ddm

@@ -1,4 +1,4 @@
-// The camera: pictures of a plant as a learner gets them, with what may go wrong with them.
+// The camera model: random streams, disturbances and the delay of images.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_sim/camera.h"
 
@@ -16,18 +16,18 @@ namespace {
 
 constexpr double kTwoPi = 2 * kPi;
 constexpr int kNumShapes = 30;
-constexpr double kBrightnessPeriod = 20.0;  // as long as a trial of the pendulum [s]
+constexpr double kBrightnessPeriod = 20.0;  // the length of a trial of the pendulum [s]
 
-/// A disc or a turned rectangle; lengths in pixels.
+/// A disc or a rotated rectangle; lengths in pixels.
 struct Shape {
   bool disc;
-  double x, y;  ///< of its middle
+  double x, y;  ///< position of the centre
   double half_width, half_height;
-  double cos, sin;  ///< of the angle that it is turned by
-  double softness;  ///< width of its edge
+  double cos, sin;  ///< of the angle of rotation
+  double softness;  ///< width over which the edge fades
   double grey;
 
-  /// How much of the pixel around (px, py) it covers, in [0, 1].
+  /// Share of the pixel around (px, py) that the shape covers, in [0, 1].
   double cover(double px, double py) const {
     const double along = (px - x) * cos + (py - y) * sin;
     const double across = (py - y) * cos - (px - x) * sin;
@@ -59,7 +59,8 @@ Shape drawShape(int width, int height, std::mt19937_64* rng) {
   return shape;
 }
 
-/// Shapes on black, each in front of the last, the brightest pixel `highest`.   [width * height]
+/// Draws shapes on black, each in front of the previous ones, and scales the brightest pixel to
+/// `highest`.                                                                      [width * height]
 std::vector<double> drawClutter(int width, int height, double highest) {
   std::vector<double> grey(static_cast<std::size_t>(width) * height, 0.0);
   std::mt19937_64 rng = randomStream(TrialId(), StreamRole::kClutter);
@@ -85,7 +86,8 @@ std::vector<std::string> CameraOptions::problems() const {
   camera.requireFraction("brightness_drift", brightness_drift);
   camera.requireWithin("clutter", clutter, 0.0, 1.0);
   camera.requireWithin("delay", delay, 0, 1000);
-  // A reader of bags takes the median interval for the time step: most frames must follow directly.
+  // Readers of bags use the median interval of the stamps as the time step, so most images must
+  // have a direct successor.
   camera.requireWithin("drop_rate", drop_rate, 0.0, 0.3);
   return camera.problems();
 }

@@ -1,4 +1,4 @@
-// The paper's moving tile: a square that is pushed about in the picture.
+// Equations of motion and renderer of the moving tile.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_sim/moving_tile.h"
 
@@ -29,12 +29,13 @@ PlantInfo infoOf(const MovingTileOptions& options) {
   return info;
 }
 
-/// Fraction of the window of each pixel of a line, [j + 1/2 - s / 2, j + 1/2 + s / 2], that
-/// [middle - w / 2, middle + w / 2] covers.
+/// Coverage of each pixel of a line: the fraction of its window [j + 1/2 - s / 2, j + 1/2 + s / 2]
+/// that [middle - w / 2, middle + w / 2] covers.
 std::vector<double> coverage(int size, double middle) {
   const double first = middle - kTileWidth / 2;
   const double last = middle + kTileWidth / 2;
-  const double margin = (kTileSoftness - 1.0) / 2;  // of the window around the pixel
+  // The window exceeds the pixel by this margin on each side.
+  const double margin = (kTileSoftness - 1.0) / 2;
   std::vector<double> out(size);
   for (int j = 0; j < size; ++j) {
     const double overlap = std::min(last, j + 1.0 + margin) - std::max(first, j - margin);
@@ -43,7 +44,7 @@ std::vector<double> coverage(int size, double middle) {
   return out;
 }
 
-/// `position` folded back into [lowest, highest] at both ends: a triangle wave.
+/// Reflects `position` at both ends of [lowest, highest], as often as necessary (a triangle wave).
 double reflected(double position, double lowest, double highest) {
   return lowest + std::abs(std::remainder(position - lowest, 2 * (highest - lowest)));
 }

@@ -1,4 +1,4 @@
-// The paper's pendulum: a uniform rod on a motor, with or without gravity.
+// Equations of motion of the pendulum.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_sim/pendulum.h"
 
@@ -11,8 +11,8 @@
 namespace ddm {
 namespace {
 
-// Error per internal step, absolute and relative: leaves a margin of several orders to the 1e-9
-// within which a step and 100 steps of a hundredth of the length agree.
+// Absolute and relative error per internal step. One step and 100 steps of a hundredth of its
+// length must agree within 1e-9; this tolerance leaves a margin of several orders of magnitude.
 constexpr double kTolerance = 1e-12;
 
 PlantInfo infoOf(const PendulumOptions& options) {
@@ -33,7 +33,8 @@ PlantInfo infoOf(const PendulumOptions& options) {
 /// (1 - p1(x)) / x with p1(x) = (1 - e^-x) / x, the weight of u in the angle; 1/2 at x = 0.
 double secondWeight(double x) {
   if (x > 1e-2) return (x + std::expm1(-x)) / (x * x);
-  // The difference above cancels for small x; six terms leave an error below 1e-16.
+  // The expression above cancels for small x. Six terms of the Taylor series leave an error below
+  // 1e-16.
   return 1.0 / 2 -
          x * (1.0 / 6 - x * (1.0 / 24 - x * (1.0 / 120 - x * (1.0 / 720 - x * (1.0 / 5040)))));
 }

@@ -1,4 +1,4 @@
-// A plant: checks, saturation, initial states and what it may say of itself, the same for every plant.
+// The base class of all plants: checks, saturation, initial states, and the rules for PlantInfo.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_sim/plant.h"
 
@@ -25,7 +25,7 @@ void requireFinite(const char* name, const Eigen::VectorXd& value, Eigen::Index 
   throw std::invalid_argument(message.str());
 }
 
-/// @throws std::logic_error if draw() made something else than a picture
+/// @throws std::logic_error if draw() returned an invalid image
 void requirePicture(const Picture& picture) {
   const bool sound = picture.width >= 1 && picture.height >= 1 &&
                      (picture.channels == 1 || picture.channels == 3) &&
@@ -40,7 +40,7 @@ void requirePicture(const Picture& picture) {
   throw std::logic_error(message.str());
 }
 
-constexpr std::size_t kMaxDim = 1000;  // as in model files
+constexpr std::size_t kMaxDim = 1000;  // the limit of model files
 
 /// The rules of makePlant() that a plant breaks.
 std::vector<std::string> problemsOf(const PlantInfo& info) {

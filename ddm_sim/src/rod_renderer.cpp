@@ -1,4 +1,4 @@
-// Picture of rods with soft edges: the link of a pendulum, the links of an arm.
+// Renderer for rods with soft edges.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_sim/rod_renderer.h"
 
@@ -36,8 +36,9 @@ Picture RodRenderer::render(const std::vector<Rod>& rods) const {
   const double gain = 255.0 / edge_softness_;
   const double at_centre_line = gain * rod_half_width_ + 127.5;
 
+  // Squared distance of each pixel centre to the nearest rod [m^2].
   std::vector<double> distances(static_cast<std::size_t>(size_) * size_,
-                                std::numeric_limits<double>::max());  // squared, to nearest rod
+                                std::numeric_limits<double>::max());
   for (const Rod& rod : rods) {
     const double direction_x = std::sin(rod.angle);
     const double direction_y = -std::cos(rod.angle);

@@ -1,4 +1,4 @@
-// An arm of two links with a motor in each joint.
+// Equations of motion of the arm of two links.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_sim/two_link.h"
 
@@ -15,7 +15,8 @@
 namespace ddm {
 namespace {
 
-constexpr double kTolerance = 1e-12;  // error per internal step, as for the pendulum
+// Absolute and relative error per internal step, as for the pendulum.
+constexpr double kTolerance = 1e-12;
 
 PlantInfo infoOf(const TwoLinkOptions& options) {
   PlantInfo info;

@@ -1,4 +1,4 @@
-// Tests of what ROS tells of a camera.
+// Tests of camera_info and of the tf frame of a camera.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
@@ -10,7 +10,8 @@
 namespace ddm {
 namespace {
 
-/// 640 x 480 with 90 degrees, at (1, 2, 3), which looks along y: x to the right, z up.
+/// A camera with 640 x 480 pixels and a vertical field of view of 90 degrees at (1, 2, 3) that
+/// looks along y: x of the image to the right, z up.
 CameraModel sideways() {
   CameraModel camera;
   camera.name = "front";

@@ -1,4 +1,4 @@
-// Tests of the camera's nuisances over the wire, in lock-step and in real time.
+// Tests of the camera's disturbances through sim_node, in lock-step and in real time.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_msgs/testing/node_main.h>
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ constexpr std::uint64_t kSeed = 7;
 constexpr std::uint32_t kTrial = 3;
 const std::vector<double> kStart{0.3, 5.0};
 
-/// Plant and camera that the launch file describes.
+/// Plant and camera with the parameters of the launch file.
 class CameraNode : public ::testing::Test {
  protected:
   CameraNode() {
@@ -42,14 +42,15 @@ class CameraNode : public ::testing::Test {
     client_.forget();
   }
 
-  /// Ground truth and image `index` are what the library shows in this step.
+  /// Expects that ground truth and image number `index` equal the results of the library in this
+  /// step.
   void expectFrame(std::size_t index, const Picture& photograph) {
     EXPECT_EQ(client_.images[index].data, photograph.bytes) << index;
     EXPECT_EQ(client_.truths[index].header.stamp, client_.images[index].header.stamp) << index;
     EXPECT_EQ(client_.truths[index].position, std::vector<double>{plant_->state()[0]}) << index;
   }
 
-  /// What the camera shows of the plant now; empty: the frame is lost.
+  /// The camera image of the current state; empty if the image is lost.
   std::optional<Picture> photograph() {
     return camera_->photograph(plant_->render(plant_->state()));
   }
@@ -86,16 +87,17 @@ TEST_F(LockstepCamera, ShowsTheFramesOfTheLibraryAndGoesOnUnderTheLastTorqueWher
     } while (!seen);
   }
   EXPECT_GT(step, kFrames);
-  ASSERT_TRUE(client_.waitForLog("40 frames answered"));  // those that were seen
+  // Counts only the images that were published.
+  ASSERT_TRUE(client_.waitForLog("40 frames answered"));
   EXPECT_EQ(client_.images.size(), kFrames);
-  // 100 frames a second, in two of which the test itself may be late.
+  // At 100 images per second; the test itself may be late in two periods.
   EXPECT_GT((ros::WallTime::now() - begin).toSec(), 0.37);
 }
 
 TEST_F(RealtimeCamera, ShowsTheFramesOfTheLibraryAndNothingWhereOneIsLost) {
   constexpr std::size_t kFrames = 20;
   const ros::Time start = client_.reset(0, kStart, kSeed, kTrial).start;
-  // each list by itself: of the frames before, one topic may have been connected earlier than the other
+  // Each list is handled by itself, because one topic may have been connected before the other.
   const auto dropEarlier = [&start](auto* messages) {
     const auto isEarlier = [&start](const auto& message) { return message.header.stamp < start; };
     messages->erase(std::remove_if(messages->begin(), messages->end(), isEarlier), messages->end());
@@ -112,7 +114,7 @@ TEST_F(RealtimeCamera, ShowsTheFramesOfTheLibraryAndNothingWhereOneIsLost) {
     } else {
       ++num_lost;
     }
-    plant_->step(Eigen::VectorXd::Zero(1));  // nobody publishes a torque
+    plant_->step(Eigen::VectorXd::Zero(1));  // because no node publishes a torque
   }
   EXPECT_GT(num_lost, 0);
 }

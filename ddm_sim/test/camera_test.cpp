@@ -1,4 +1,4 @@
-// Tests of the camera: what each nuisance does to a photograph, and what fixes it.
+// Tests of the camera: the effect of each disturbance on the images, and their reproducibility.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_sim/camera.h"
 
@@ -22,27 +22,27 @@ using Bytes = std::vector<std::uint8_t>;
 
 constexpr double kDt = 0.2;  // [s]
 
-/// What there is to see of a plant now.
+/// The rendered image of the current state.
 Picture viewOf(const Plant& plant) { return plant.render(plant.state()); }
 
 Picture hangingRod() { return viewOf(Pendulum{PendulumOptions()}); }
 
-/// Nothing but the background is seen.
+/// An image that shows the background only.
 Picture black() { return testing::plainPicture(51, 0); }
 
-/// The next photograph, empty where the frame is lost.
+/// The next camera image; empty if the image is lost.
 Bytes photographOf(Camera* camera, const Picture& picture) {
   const std::optional<Picture> photograph = camera->photograph(picture);
   return photograph ? photograph->bytes : Bytes();
 }
 
-/// The first photograph of a new camera.
+/// The first image of a new camera.
 Bytes photographOf(const CameraOptions& options, const Picture& picture) {
   Camera camera(options, kDt);
   return photographOf(&camera, picture);
 }
 
-/// Images of a pendulum that swings, one for each step, empty where the camera loses one.
+/// Images of a swinging pendulum, one for each step; empty where the camera loses an image.
 /// @param camera  null for the rendered images themselves
 std::vector<Bytes> film(Camera* camera, int num_steps) {
   Pendulum plant{PendulumOptions()};
@@ -54,7 +54,7 @@ std::vector<Bytes> film(Camera* camera, int num_steps) {
   return out;
 }
 
-/// FNV-1a of all bytes of a film.
+/// FNV-1a hash of all bytes of all images.
 std::uint64_t hashOf(const std::vector<Bytes>& frames) {
   std::uint64_t hash = 14695981039346656037ULL;
   for (const Bytes& frame : frames) {
@@ -69,7 +69,7 @@ std::vector<bool> lost(const std::vector<Bytes>& frames) {
   return out;
 }
 
-/// Committed results were made from these pictures.
+/// Committed results were computed from these images.
 TEST(Camera, ShowsTheSamePicturesAsEverWhereAllNuisancesAreOff) {
   Camera camera(CameraOptions(), kDt);
   EXPECT_EQ(hashOf(film(&camera, 20)), 0xa5dc86f41e3e2aafULL);
@@ -83,7 +83,8 @@ TEST(Camera, ShowsTheSamePicturesAsEverWhereAllNuisancesAreOff) {
   EXPECT_EQ(hashOf(frames), 0xc521c9e3ec638024ULL);
 }
 
-/// A picture of another shape than our plants': wide, in colour, black on its left half.
+/// An image that differs from those of this package's plants: wide, in colour, black on its left
+/// half.
 Picture colourful() {
   Picture picture{40, 10, 3, {}, {}};
   for (int i = 0; i < picture.height; ++i) {
@@ -145,7 +146,7 @@ TEST(Camera, AddsIndependentNoiseOfTheGivenSpreadToEachPixelOfEachFrame) {
 TEST(Camera, ChangesTheBrightnessOfAllPixelsAlikeInASineOfTheGivenPeriod) {
   CameraOptions options;
   options.brightness_drift = 0.2;
-  Camera camera(options, 0.5);  // a period has 40 steps
+  Camera camera(options, 0.5);  // a period of the brightness has 40 steps
   const Picture rod = hangingRod();
   const Bytes& clean = rod.bytes;
   std::vector<double> factor;
@@ -180,8 +181,8 @@ TEST(Camera, ShowsClutterAloneWhereThereIsNoPlant) {
       slopes += jump >= 1 && jump < 8 ? 1 : 0;
     }
   }
-  EXPECT_GT(edges, 40);    // sharp shapes: blurred ones alone have a few
-  EXPECT_GT(slopes, 400);  // blurred shapes: sharp ones alone have half of it
+  EXPECT_GT(edges, 40);    // sharp shapes; blurred shapes alone have a few
+  EXPECT_GT(slopes, 400);  // blurred shapes; sharp shapes alone have half as many
 }
 
 TEST(Camera, RefusesClutterBehindAPlantThatDoesNotSayWhatItCovers) {
@@ -209,7 +210,7 @@ TEST(Camera, ShowsTheStateOfSoManyFramesAgoAndAtFirstThatOfTheFirstFrame) {
     CameraOptions options;
     options.delay = delay;
     Camera camera(options, kDt);
-    for (int run = 0; run < 2; ++run) {  // a new run forgets what the last one has not shown yet
+    for (int run = 0; run < 2; ++run) {  // begin() discards the images that wait for their delay
       camera.begin(0, 0, false);
       const std::vector<Bytes> late = film(&camera, 20);
       for (int t = 0; t < 20; ++t) EXPECT_EQ(late[t], clean[std::max(0, t - delay)]) << t;
@@ -284,7 +285,7 @@ TEST(Camera, TakesTheSameNoisyGoalImageAtAnyTimeAndChangesNoPhotographByIt) {
   options.brightness_drift = 0.0;
   options.delay = 0;
   options.drop_rate = 0.0;
-  // Neither dark, nor late, nor lost.
+  // The goal image is neither darkened, nor delayed, nor lost.
   EXPECT_EQ(Camera(options, kDt).photographGoal(rod).bytes, quiet);
 }
 

@@ -1,4 +1,4 @@
-// Tests of plant and camera together: what is seen, what time it is, and how a run begins.
+// Tests of the environment: images, time, and the begin of an episode.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_sim/environment.h"
 
@@ -35,7 +35,7 @@ std::unique_ptr<Plant> quickPlant() { return std::make_unique<Pendulum>(quickPen
 
 Eigen::VectorXd torqueOf(double value) { return Eigen::VectorXd::Constant(1, value); }
 
-/// Plant and camera, moved by hand.
+/// Plant and camera without the class Environment.
 struct ByHand {
   Pendulum plant{quickPendulum()};
   Camera camera{allNuisances(), quickPendulum().dt};
@@ -143,13 +143,14 @@ TEST(Environment, DrawsAGoalForEachRunAndShowsItOnTheGoalImage) {
       EXPECT_EQ(environment.plant().goalError(goal), 0.0);
       goals.insert(goal[0]);
       images.insert(environment.goalImage().bytes);
-      // A given start leaves the goal of the run as it is.
+      // An explicit initial state does not change the goal of the episode.
       environment.reset(kSeed, trial, evaluation, Eigen::Vector2d(0.0, 0.0));
       EXPECT_EQ(environment.plant().goal(), goal);
     }
   }
   EXPECT_EQ(goals.size(), 10U);
-  EXPECT_GT(images.size(), 3U);  // pixels are coarser
+  // Fewer than goals, because different goals can give the same image.
+  EXPECT_GT(images.size(), 3U);
 }
 
 TEST(Environment, StaysAsItIsWhereTheGoalIsOutOfReach) {

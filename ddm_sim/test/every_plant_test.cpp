@@ -1,4 +1,4 @@
-// Tests of what every plant must fulfil: one for each rule, over all plants that there are and one of yours.
+// Tests of the rules for plants, over all plants of this package and one of another package.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_common/param_reader.h>
 #include <ddm_plant_plugin/plant_config.h>
@@ -27,7 +27,7 @@ struct Candidate {
   std::string name;
   std::function<std::shared_ptr<const PlantMaker>()> maker;
   bool needs_mujoco = false;
-  bool own = true;  ///< of this package
+  bool own = true;  ///< true for plants of this package
 };
 
 void PrintTo(const Candidate& candidate, std::ostream* out) { *out << candidate.name; }
@@ -39,14 +39,14 @@ std::shared_ptr<const PlantMaker> makerOfFile(const std::string& path) {
   return maker;
 }
 
-/// All plants that the folder config/ describes, toys for what those do not do, and the plant that
-/// the environment variable DDM_PLANT names, such as ddm_cart/cart.
+/// All plants that the folder config/ describes, toy plants with further features, and the plant
+/// that the environment variable DDM_PLANT names, such as ddm_cart/cart.
 std::vector<Candidate> candidates() {
   std::vector<Candidate> out;
   for (const fs::directory_entry& entry : fs::directory_iterator(DDM_SIM_SOURCE_DIR "/config")) {
     const std::string path = entry.path().string();
     const std::string name = entry.path().stem().string();
-    if (name == "sim" || name == "robot") continue;  // no plants
+    if (name == "sim" || name == "robot") continue;  // these files describe no plants
     const YAML::Node type = YAML::LoadFile(path)["plant"]["type"];
     out.push_back(
         {name, [path] { return makerOfFile(path); }, type.as<std::string>("") == "mujoco"});
@@ -71,7 +71,7 @@ class EveryPlantTest : public ::testing::TestWithParam<Candidate> {
 
   const PlantInfo& info() const { return plant_->info(); }
 
-  /// States on the way of a plant that is pushed at random, among them start and goal.
+  /// States of a plant under random torques, and its initial state and goal.
   std::vector<Eigen::VectorXd> states() const {
     const std::unique_ptr<Plant> plant = makePlant(*maker_);
     std::mt19937_64 engine(1);
@@ -96,7 +96,7 @@ TEST_P(EveryPlantTest, IsMadeInTheMiddleOfItsStartsAndMovesUnderEachMotor) {
   EXPECT_EQ(plant_->goal(), info().goal);
   if (GetParam().own) {
     plant_->step(Eigen::VectorXd::Zero(plant_->torqueDim()));
-    // The sine of pi, where some hang, is 1e-16.
+    // sin(pi) is 1e-16 in double precision, and some plants hang at pi.
     EXPECT_LE((plant_->state() - info().start).lpNorm<Eigen::Infinity>(), 1e-12);
   }
   for (Eigen::Index motor = 0; motor < plant_->torqueDim(); ++motor) {
@@ -108,7 +108,7 @@ TEST_P(EveryPlantTest, IsMadeInTheMiddleOfItsStartsAndMovesUnderEachMotor) {
 
 TEST_P(EveryPlantTest, HasAnErrorAnImageAPlaceAndARewardInEachState) {
   EXPECT_LE(plant_->goalError(info().goal), 1e-9 * info().tolerance);
-  if (info().start != info().goal) {  // what is to be balanced starts there
+  if (info().start != info().goal) {  // in a balancing task, the initial state is the goal
     EXPECT_GT(plant_->goalError(info().start), info().tolerance);
   }
   const Picture first = plant_->render(info().start);
@@ -118,7 +118,7 @@ TEST_P(EveryPlantTest, HasAnErrorAnImageAPlaceAndARewardInEachState) {
   for (const Eigen::VectorXd& state : states()) {
     const double error = plant_->goalError(state);
     ASSERT_TRUE(error >= 0.0 && std::isfinite(error)) << state.transpose();
-    plant_->setGoal(state);  // the error is that to the goal of this trial
+    plant_->setGoal(state);  // goalError() refers to the goal of the episode
     ASSERT_LE(plant_->goalError(state), 1e-9 * info().tolerance) << state.transpose();
     plant_->setGoal(info().goal);
     const Eigen::VectorXd place = plant_->visiblePosition(state);
@@ -132,7 +132,8 @@ TEST_P(EveryPlantTest, HasAnErrorAnImageAPlaceAndARewardInEachState) {
     ASSERT_EQ(picture.width, first.width);
     ASSERT_EQ(picture.height, first.height);
     ASSERT_EQ(picture.channels, first.channels);
-    // A scene has its own background. Other images of ours have a cover, see camera/clutter.
+    // Images of a model file have their own background and no cover. Other images of this package
+    // have a cover, see camera/clutter.
     if (GetParam().own) {
       ASSERT_EQ(picture.cover.empty(), maker_->type() == "mujoco");
     }
@@ -171,7 +172,8 @@ TEST_P(EveryPlantTest, SpreadsItsStartsAsItSays) {
     products += offset * offset.transpose();
   }
   for (Eigen::Index i = 0; i < plant_->stateDim(); ++i) {
-    // Five standard errors: 1 / sqrt(n) of mean and correlation, 1 / sqrt(2 n) of the deviation.
+    // Tolerances are five standard errors: 1 / sqrt(n) for mean and correlation, 1 / sqrt(2 n) for
+    // the deviation.
     const double spread = info().start_std[i];
     EXPECT_NEAR(sum[i] / kDraws, 0.0, 5 * spread / std::sqrt(kDraws)) << i;
     EXPECT_NEAR(std::sqrt(products(i, i) / kDraws), spread, 5 * spread / std::sqrt(2.0 * kDraws));

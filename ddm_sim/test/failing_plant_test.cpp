@@ -1,4 +1,4 @@
-// What a simulator answers to a reset in which its plant fails.
+// Tests the answer of a simulator to a reset in which its plant fails.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_msgs/testing/node_main.h>
 #include <ros/callback_queue.h>

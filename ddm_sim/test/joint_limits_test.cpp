@@ -1,4 +1,4 @@
-// Tests of the limits of a robot's joints: what violates them, and which joints are silent.
+// Tests of the joint limits of a robot: violations, and silent joints.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_robot/joint_limits.h"
 
@@ -12,7 +12,7 @@ namespace {
 
 SteadyTime at(int ms) { return SteadyTime(std::chrono::hours(1) + std::chrono::milliseconds(ms)); }
 
-/// A report that was measured when it arrives; each has a stamp of its own.
+/// A report that arrives at the time of its measurement; each report has a different stamp.
 JointReport reportAt(int ms, const std::string& reporter, const std::vector<std::string>& names,
                      const std::vector<double>& positions, const std::vector<double>& velocities) {
   static int num_reports = 0;

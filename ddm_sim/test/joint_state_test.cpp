@@ -1,4 +1,4 @@
-// Tests of a plant's state as a JointState: each array is empty or as long as the names.
+// Tests of the JointState message of a plant: each array is empty or as long as the names.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "joint_state.h"
 
@@ -19,7 +19,7 @@ Eigen::VectorXd numbers(const Numbers& values) {
   return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
-/// Of a plugin with these joints, names and motors, in the state 1, 2, 3, ...
+/// The message of a toy plant with these joints, names and motors in the state 1, 2, 3, ...
 sensor_msgs::JointState toyState(const Names& joints, const Names& states, const Names& torques) {
   ToyPlant::Traits traits;
   const auto dim = static_cast<Eigen::Index>(states.size());

@@ -1,4 +1,4 @@
-// Tests of sim_node in lock-step, over the wire.
+// Tests of sim_node in lock-step through its topics and services.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_msgs/testing/node_main.h>
 #include <gtest/gtest.h>
@@ -15,8 +15,8 @@ namespace {
 
 class Lockstep : public SimNodeTest {
  protected:
-  /// Starts a trial and waits for its first image.
-  /// @return its stamp
+  /// Begins an episode and waits for its first image.
+  /// @return the stamp of the first image
   static ros::Time begin(std::uint32_t num_steps, const std::vector<double>& start = {0.0, 0.0}) {
     client_->forget();
     const ddm_msgs::Reset::Response response = client_->reset(num_steps, start);
@@ -25,8 +25,8 @@ class Lockstep : public SimNodeTest {
     return response.start;
   }
 
-  /// The trial that was running has ended: a torque for its frame does not bring another one, and
-  /// the next image is the first of the next trial.
+  /// Expects that the episode has ended: a torque for its last image gives no new image, and the
+  /// next image is the first of the next episode.
   static void expectIdle(const ros::Time& stamp_on_show) {
     const std::size_t shown = client_->images.size();
     client_->publish(stamp_on_show, {0.0});
@@ -36,7 +36,7 @@ class Lockstep : public SimNodeTest {
   }
 };
 
-// The first test, by its place in this file: nothing has been reset before it.
+// Must be the first test of this file: no reset may come before it.
 TEST_F(Lockstep, ShowsClockAndGoalButNoImageBeforeTheFirstReset) {
   ASSERT_TRUE(client_->waitUntil([] { return !client_->clocks.empty(); }));
   ASSERT_TRUE(client_->waitUntil([] { return !client_->goals.empty(); }));
@@ -52,7 +52,7 @@ TEST_F(Lockstep, ShowsTheGoalStateOnTheGoalImageWhoseStampAResetTells) {
   EXPECT_EQ(client_->goals[0].data, plant.render(plant.goal()).bytes);
   EXPECT_EQ(client_->goals[0].encoding, "mono8");
   EXPECT_EQ(client_->reset(0).goal, client_->goals.back().header.stamp);
-  EXPECT_TRUE(client_->waitForImages(1));  // or it would be the next test's
+  EXPECT_TRUE(client_->waitForImages(1));  // so that the next test does not receive the image
 }
 
 TEST_F(Lockstep, ShowsExactlyTheImagesAskedForEachDtAfterTheLast) {
@@ -72,7 +72,7 @@ TEST_F(Lockstep, MovesThePlantAsTheLibraryDoesAndPublishesWhatActedAndTheTruthOf
   Pendulum plant{PendulumOptions()};
   plant.setState(Eigen::Vector2d(0.3, -1.7));
   begin(4, {0.3, -1.7});
-  const std::vector<double> torques{2.0, -9.0, 0.5};  // the second one saturates
+  const std::vector<double> torques{2.0, -9.0, 0.5};  // the second torque saturates
   double applied = 0.0;
   for (std::size_t t = 0; t < 4; ++t) {
     ASSERT_TRUE(client_->waitForImages(t + 1));
@@ -101,7 +101,7 @@ TEST_F(Lockstep, CountsAndIgnoresATorqueWithAnotherStamp) {
   client_->publish(start, {1.0});
   ASSERT_TRUE(client_->waitForImages(2));
   EXPECT_EQ(client_->truths[1].effort, std::vector<double>{1.0});
-  client_->publish(start, {6.0});  // answered before: no longer the stamp on show
+  client_->publish(start, {6.0});  // an old stamp, which is ignored
   client_->publish(client_->images[1].header.stamp, {2.0});
   ASSERT_TRUE(client_->waitForImages(3));
   EXPECT_EQ(client_->truths[2].effort, std::vector<double>{2.0});

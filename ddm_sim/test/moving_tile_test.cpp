@@ -1,4 +1,4 @@
-// Tests of the moving tile: its image, reflection at the border, start and goal.
+// Tests of the moving tile: its image, the reflection at the border, initial state and goal.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_sim/moving_tile.h"
 
@@ -18,7 +18,7 @@ constexpr int kTilePicture = 51;
 constexpr double kLowest = 4.5;
 constexpr double kHighest = 46.5;
 
-/// One step of a tile that may be pushed by any distance.
+/// One step of a tile with unlimited increments.
 Eigen::VectorXd stepOf(const Eigen::Vector2d& state, const Eigen::Vector2d& increment) {
   MovingTileOptions options;
   options.max_torque = {1e300};
@@ -28,7 +28,7 @@ Eigen::VectorXd stepOf(const Eigen::Vector2d& state, const Eigen::Vector2d& incr
   return tile.state();
 }
 
-/// The reflected position, bounce by bounce, independent of the code under test.
+/// The reflected position, computed by repeated reflections, independent of the code under test.
 double bounced(double position) {
   while (position < kLowest || position > kHighest) {
     if (position > kHighest) position = 2 * kHighest - position;
@@ -39,7 +39,7 @@ double bounced(double position) {
 
 TEST(MovingTile, MovesByTheIncrementAndBouncesOffTheBorder) {
   EXPECT_EQ(stepOf({25.0, 30.0}, {3.0, -4.5}), Eigen::Vector2d(28.0, 25.5));
-  EXPECT_EQ(stepOf({0.1 + 20, 20.0}, {0.2, 0.0})[0], 0.1 + 20 + 0.2);  // digit by digit
+  EXPECT_EQ(stepOf({0.1 + 20, 20.0}, {0.2, 0.0})[0], 0.1 + 20 + 0.2);  // exactly, without rounding
   EXPECT_EQ(stepOf({10.0, 10.0}, {kLowest - 10, kHighest - 10}),
             Eigen::Vector2d(kLowest, kHighest));
   EXPECT_EQ(stepOf({46.0, 5.0}, {2.0, -3.0}), Eigen::Vector2d(45.0, 7.0));
@@ -96,7 +96,7 @@ TEST(MovingTile, RefusesAPictureWithoutRoomForTheTileAndAllOtherProblemsWithIt) 
                                                            {"plant/picture_size", "plant/dt"}));
 }
 
-/// The grey of a pixel by the formula of the header.
+/// The grey value of a pixel by the formula in the header.
 double greyOf(int row, int column, double x, double y) {
   const auto covered = [](double d) {
     const double low = std::max(d + 0.5 - kTileSoftness / 2, -kTileWidth / 2);

@@ -1,4 +1,4 @@
-// Tests of the reader of numbers: what it takes, and what it says of the rest.
+// Tests of the reader of numbers in CSV: accepted texts, and messages for refused texts.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "number_csv.h"
 
@@ -21,7 +21,7 @@ std::vector<Eigen::VectorXd> read(const std::string& text, const Names& names = 
 
 const Names kPair = {"dx_px", "dy_px"};
 
-/// What is said of a text that must not be read.
+/// The message for a text that must be refused.
 std::string refusal(const std::string& text, const Names& names = {"torque_nm"}) {
   try {
     read(text, names);

@@ -1,4 +1,4 @@
-// Tests of the pendulum: closed form, finer steps, energy, goal.
+// Tests of the pendulum: closed form, smaller steps, energy, goal.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_sim/pendulum.h"
 
@@ -100,7 +100,7 @@ TEST(Pendulum, LocatesTheTipOfTheRod) {
   EXPECT_LT((tip(0.0) - Eigen::Vector2d(0.0, -2.0)).norm(), 1e-15);     // hangs
   EXPECT_LT((tip(kPi / 2) - Eigen::Vector2d(2.0, 0.0)).norm(), 1e-15);  // points right
   EXPECT_LT((tip(kPi) - Eigen::Vector2d(0.0, 2.0)).norm(), 1e-15);      // up
-  EXPECT_LT((tip(0.4) - tip(0.4 - 2 * kPi)).norm(), 1e-14);             // the picture is the same
+  EXPECT_LT((tip(0.4) - tip(0.4 - 2 * kPi)).norm(), 1e-14);             // the same image
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Tests of the options: valid ranges, the registry of plants, shipped YAML files like the structs.
+// Tests of plant options: valid ranges, types of plants, and defaults in the shipped YAML files.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_sim/plant_options.h"
 
@@ -45,8 +45,8 @@ std::set<std::string> keys(Options options) {
   return out;
 }
 
-/// Sets each number, and each number of each list, to `value` in turn.
-/// @return the keys for which that is no problem
+/// Sets each number, and each number of each list, to `value`, one at a time.
+/// @return the keys for which `value` is valid
 template <class Options>
 std::set<std::string> accepted(double value) {
   std::set<std::string> out;

@@ -1,4 +1,4 @@
-// Tests of what all plants share: checks, saturation, start states and their random stream.
+// Tests of the base class of plants: checks, saturation, initial states and their random stream.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_sim/plant.h"
 
@@ -47,7 +47,7 @@ TEST(Plant, RefusesStatesGoalsAndTorquesOfAnotherSizeOrNotFiniteAndKeepsTheOldOn
                                      torque(kNaN), torque(-kInfinity)}) {
     EXPECT_THROW(plant->step(bad), std::invalid_argument);
   }
-  EXPECT_EQ(plant->state(), state);  // digit by digit
+  EXPECT_EQ(plant->state(), state);  // exactly, without rounding
   EXPECT_EQ(plant->goal(), state);
   EXPECT_THROW(plant->goalAt(Eigen::Vector2d(0.1, 0.1)), std::invalid_argument);
 }
@@ -103,7 +103,7 @@ TEST(Plant, IsRewardedAfterAStepUnderTheTorqueThatActed) {
   const Eigen::Vector2d state(1.0, 2.0);
   EXPECT_DOUBLE_EQ(plant.stepReward(state, torque(2.0)).value(), -(1.44 + 4.84 + 0.4));
   EXPECT_EQ(plant.stepReward(state, torque(60.0)), plant.stepReward(state, torque(6.0)));
-  const Eigen::VectorXd next = state.array() + 0.2;  // where this torque leads
+  const Eigen::VectorXd next = state.array() + 0.2;  // the state after this torque
   EXPECT_DOUBLE_EQ(
       plant.stepReward(state, torque(2.0), 2).value(),
       plant.stepReward(state, torque(2.0)).value() + plant.stepReward(next, torque(2.0)).value());
@@ -131,7 +131,7 @@ TEST(StartStream, DiffersBetweenSeedsTrialsAndEvaluation) {
   std::set<std::uint64_t> starts;
   std::set<double> goals;
   std::size_t count = 0;
-  // 2^32 differs from 0 in its high half only: both halves of the seed have to count.
+  // 2^32 differs from 0 in its upper half only, so both halves of the seed must have an effect.
   for (const std::uint64_t seed : {0ULL, 1ULL, 1ULL << 32}) {
     for (std::uint32_t trial = 0; trial < 20; ++trial) {
       for (const bool evaluation : {false, true}) {

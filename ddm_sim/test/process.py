@@ -1,4 +1,4 @@
-# A program whose output is read while it runs; every wait has a limit.
+# Runs a program and reads its output while it runs; every wait has a time limit.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import signal
@@ -9,14 +9,14 @@ import roslib.packages
 
 
 def find_program(package, name):
-    """Path of a program of a package, in the devel or the install space."""
+    """Returns the path of a program of a package in the devel or the install space."""
     paths = roslib.packages.find_node(package, name)
     assert paths, "%s has no program %s: build the workspace first" % (package, name)
     return paths[0]
 
 
 class Process:
-    """stdout and stderr together are `output`, unless they go to the file `written_to`."""
+    """A running program. `output` contains its stdout and stderr, unless they go to the file `written_to`."""
 
     def __init__(self, command, written_to=None):
         self.output = ""
@@ -37,23 +37,23 @@ class Process:
             self._changed.notify_all()
 
     def waitForText(self, text, limit_s):
-        """Returns as soon as the output holds this text; fails if the program ends or time runs out before."""
+        """Waits until the output contains this text; fails if the program ends or the limit passes before."""
         with self._changed:
             self._changed.wait_for(lambda: text in self.output or self._ended, limit_s)
             if text not in self.output:
                 raise TimeoutError("'%s' did not come within %g s:\n%s" % (text, limit_s, self.output))
 
     def waitForEnd(self, limit_s):
-        """The exit code."""
+        """Waits for the end of the program and returns its exit code."""
         code = self._process.wait(limit_s)
         self._reader.join(limit_s)
         return code
 
     def send(self, signal_number):
-        self._process.send_signal(signal_number)  # nothing if it has ended
+        self._process.send_signal(signal_number)  # no effect if the program has ended
 
     def stop(self, limit_s=20.0):
-        """Ends the program, by SIGKILL if SIGINT does not."""
+        """Ends the program by SIGINT, or by SIGKILL if it does not end within the limit."""
         self.send(signal.SIGINT)
         try:
             self._process.wait(limit_s)

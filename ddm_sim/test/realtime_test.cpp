@@ -1,4 +1,4 @@
-// Tests of sim_node in real time, over the wire.
+// Tests of sim_node in real time through its topics and services.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <actionlib_msgs/GoalID.h>
 #include <ddm_msgs/testing/node_main.h>
@@ -20,7 +20,7 @@ class Realtime : public SimNodeTest {
     client_->forget();
   }
 
-  /// Waits for the first image that shows this torque at work, from now on.
+  /// Waits for the next image whose ground truth contains this torque.
   static bool waitForEffort(double effort) {
     const std::size_t seen = client_->truths.size();
     return client_->waitUntil([seen, effort] {
@@ -31,15 +31,15 @@ class Realtime : public SimNodeTest {
     });
   }
 
-  /// Waits for the next image; its ground truth may come before or after it.
-  /// @return its stamp
+  /// Waits for the next image; its ground truth may arrive before or after it.
+  /// @return the stamp of the image
   static ros::Time nextImage() {
     const std::size_t seen = client_->images.size();
     EXPECT_TRUE(client_->waitUntil([seen] { return client_->images.size() > seen; }));
     return client_->images[seen].header.stamp;
   }
 
-  /// Waits for what acted as the answer to an image.
+  /// Waits for the applied torque of an image.
   static std::vector<double> appliedAt(const ros::Time& stamp) {
     const ddm_msgs::Torque* found = nullptr;
     EXPECT_TRUE(client_->waitUntil([&] {
@@ -74,7 +74,8 @@ TEST_F(Realtime, ShowsImagesByItselfStampedWithWallTime) {
   }
   const double three_periods =
       (client_->images[3].header.stamp - client_->images[0].header.stamp).toSec();
-  EXPECT_GT(three_periods, 2 * 0.1);  // generous to a busy machine, but no burst of images
+  // Less than three periods, because a busy machine delays images; a burst of images fails.
+  EXPECT_GT(three_periods, 2 * 0.1);
 }
 
 TEST_F(Realtime, HoldsATorqueForTwoPeriodsAndThenSwitchesTheMotorOff) {
@@ -91,7 +92,7 @@ TEST_F(Realtime, WhatIsPublishedAsAppliedIsWhatTheMotorHadUntilTheNextImage) {
   while (stamps.size() < 20) {
     const double torque = 0.1 * static_cast<double>(stamps.size());
     client_->publish(stamps.back(), {torque});
-    // Every third answer comes too late: the image has another one.
+    // Every third torque is late, because the image has another answer already.
     if (stamps.size() % 3 == 0) client_->publish(stamps[stamps.size() - 2], {-torque});
     stamps.push_back(nextImage());
   }
@@ -121,7 +122,7 @@ TEST_F(Realtime, ATorqueThatIsLateOrLostActedAsTheAnswerToNoImage) {
   EXPECT_EQ(appliedAt(lost), std::vector<double>{});
   EXPECT_EQ(appliedAt(late), std::vector<double>{});
   EXPECT_EQ(appliedAt(next), std::vector<double>{});
-  // Though it did act, which is published after that.
+  // The torque acts all the same, and the ground truth shows it later.
   EXPECT_TRUE(client_->waitUntil([] { return numFramesWithEffort(1.5) >= 1; }));
 }
 
@@ -153,7 +154,7 @@ TEST_F(Realtime, CancelsTheTrialAtATorqueThatIsRefusedOnce) {
   const ros::Subscriber cancel = nh.subscribe<actionlib_msgs::GoalID>(
       "run_trial/cancel", 10, [&](const actionlib_msgs::GoalIDConstPtr&) { ++num_cancelled; });
   ASSERT_TRUE(client_->waitUntil([&] { return cancel.getNumPublishers() == 1; }));
-  ASSERT_TRUE(client_->waitUntil([&] {  // until the publisher's side stands, too
+  ASSERT_TRUE(client_->waitUntil([&] {  // repeated until the publisher is connected, too
     client_->reset(0, {0.0, 0.0});
     client_->publish(ros::Time(5, 0), {1e300});
     return num_cancelled > 0;
@@ -182,7 +183,7 @@ TEST_F(Realtime, ResetsAtAnyTimeAndDropsTheTorqueOnHold) {
   }));
   const auto first = std::find_if(truths.begin(), truths.end(), isFirst);
   EXPECT_EQ(first->position[0], 2.0);
-  EXPECT_EQ((first + 1)->position[0], 2.0);  // no gravity, no torque: it stays
+  EXPECT_EQ((first + 1)->position[0], 2.0);  // without gravity and torque the rod stays
   EXPECT_EQ((first + 1)->effort[0], 0.0);
 }
 

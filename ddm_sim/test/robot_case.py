@@ -1,4 +1,4 @@
-# What robot_node has around it: a camera, a controller, a motor and a user, played in one process.
+# The surroundings of robot_node for tests: a camera, a controller, a motor and a user in one process.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import tempfile
@@ -23,7 +23,7 @@ CROP = [8, 0, 32, 32]
 
 
 def wait_until(condition, what="the condition"):
-    """Returns what the condition gives as soon as that is true."""
+    """Calls the condition until its result is true, and returns the result."""
     end = time.time() + LIMIT_S
     while time.time() < end:
         value = condition()
@@ -34,7 +34,7 @@ def wait_until(condition, what="the condition"):
 
 
 def in_background(function, *arguments):
-    """Calls it at once. Returns a function that waits for its end and gives what it returned."""
+    """Calls a function in a thread. Returns a function that waits for the end of the call and returns its result."""
     box = []
     thread = threading.Thread(target=lambda: box.append(function(*arguments)), daemon=True)
     thread.start()
@@ -49,7 +49,7 @@ def in_background(function, *arguments):
 
 
 class Camera:
-    """30 images a second; left half `left`, right half black."""
+    """Publishes 30 images per second; the left half has the grey value `left`, the right half is black."""
 
     def __init__(self, topic):
         self.restore()
@@ -83,7 +83,7 @@ class Camera:
         self._publisher.publish(image)
 
     def end_with_image(self, age_s):
-        """One more image, then silence. Returns the monotonic time of the image before."""
+        """Publishes one more image and then none. Returns the monotonic time of the image before."""
         with self._lock:
             self.showing = False
             self._publish(age_s)
@@ -93,7 +93,7 @@ class Camera:
 class Listener:
     def __init__(self, topic, kind):
         self.messages = []
-        self.times = []  # monotonic, of their arrival
+        self.times = []  # monotonic time of each arrival
         self._subscriber = rospy.Subscriber(topic, kind, self._take, queue_size=1000, tcp_nodelay=True)
 
     def _take(self, message):
@@ -104,12 +104,13 @@ class Listener:
         self._subscriber.unregister()
 
     def connected(self):
-        """rospy counts a connection before it is one: until its header is there, messages can be missed."""
+        """Whether all connections are complete. rospy counts a connection before its header has arrived, and messages
+        can be lost until then."""
         connections = self._subscriber.impl.connections
         return bool(connections) and all(connection.header for connection in connections)
 
     def next(self):
-        """The next message from now on."""
+        """Waits for the next message and returns it."""
         seen = len(self.messages)
         wait_until(lambda: len(self.messages) > seen, "a message on " + self._subscriber.name)
         return self.messages[seen]
@@ -135,11 +136,11 @@ class Robot:
         self.process = Process([find_program("ddm_sim", "robot_node")] + list(arguments), **kwargs)
         rospy.wait_for_service("reset", LIMIT_S)
         wait_until(lambda: self.torques.get_num_connections() and self.trial_ends.get_num_connections(), "robot_node")
-        for listener in self.listeners():  # or a message that is sent once could be missed
+        for listener in self.listeners():  # otherwise a message that is sent once could be lost
             wait_until(listener.connected, "a connection of each topic")
 
     def end(self):
-        """Leaves the topics to the next one."""
+        """Ends the node and its surroundings, so that the next test can use the topics."""
         self.process.stop()
         self.camera.end()
         self.stopAnswering()
@@ -153,7 +154,7 @@ class Robot:
                 self.enabled)
 
     def settle(self):
-        """Ends the trial and whatever a test has changed."""
+        """Ends the episode and restores everything that a test has changed."""
         self.stopAnswering()
         self.camera.restore()
         num_cancels = len(self.cancels.messages)
@@ -176,11 +177,11 @@ class Robot:
 
     @staticmethod
     def reset():
-        """The answer, which may take a while."""
+        """Calls the service reset in a thread. Returns a function that waits for the answer."""
         return in_background(rospy.ServiceProxy("reset", Reset))
 
     def answer(self, *torque, delay_s=0.0):
-        """Answers the next image. Returns its stamp."""
+        """Publishes a torque for the next image. Returns the stamp of the image."""
         now = rospy.Time.now()  # an image from before the motors were enabled may still arrive
         image = wait_until(lambda: next((each for each in self.images.messages if each.header.stamp > now), None), "an image")
         time.sleep(delay_s)
@@ -188,13 +189,13 @@ class Robot:
         return image.header.stamp
 
     def appliedAt(self, stamp):
-        """What acted as the answer to an image."""
+        """Returns the applied torque of an image."""
         def found():
             return [message for message in self.applied.messages if message.header.stamp == stamp]
         return list(wait_until(found, "what acted")[0].torque)
 
     def answerAll(self, torque):
-        """Answers each image from now on."""
+        """Publishes this torque for each image from now on."""
         self.controller = rospy.Subscriber("camera/image_raw", Image, lambda image: self.publishTorque(image, torque), tcp_nodelay=True)
 
     def stopAnswering(self):
@@ -208,7 +209,7 @@ class Robot:
         self.torques.publish(message)
 
     def waitForEffort(self, effort):
-        """From now on. A number, of several motors a tuple."""
+        """Waits for a new message with this effort: a number, or a tuple for several motors."""
         seen = len(self.efforts.messages)
         try:
             wait_until(lambda: any(message.data == effort for message in self.efforts.messages[seen:]),
@@ -217,7 +218,7 @@ class Robot:
             raise AssertionError("%s; robot_node says:\n%s" % (e, self.process.output))
 
     def effort(self):
-        """What the motors get now."""
+        """Returns the effort in the next message."""
         return self.efforts.next().data
 
     def numMisses(self):
@@ -225,7 +226,7 @@ class Robot:
 
 
 def start_robot(*arguments, dt=DT, max_torque=4.0, robot=None, **kwargs):
-    """A robot_node with its surroundings; `robot` has the parameters that are lists."""
+    """Starts a robot_node with its surroundings; `robot` contains the parameters that are lists."""
     if rospy.has_param("/robot_node"):
         rospy.delete_param("/robot_node")
     rospy.set_param("/robot_node/robot", dict(robot or {}, dt=dt, max_torque=max_torque, crop=CROP))
@@ -234,24 +235,24 @@ def start_robot(*arguments, dt=DT, max_torque=4.0, robot=None, **kwargs):
 
 
 class RobotCase(unittest.TestCase):
-    """Tests that start a robot_node each."""
+    """Base class of tests that start a robot_node of their own."""
 
     def file(self, name):
-        """A path in a folder of this test."""
+        """Returns a path in a temporary folder of this test."""
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         return os.path.join(folder.name, name)
 
     def start(self, *arguments, **kwargs):
-        """A robot_node that leaves nothing behind after the test."""
+        """Starts a robot_node that ends with the test."""
         robot = start_robot(*arguments, **kwargs)
         self.addCleanup(robot.end)
         return robot
 
 
 class SharedRobotCase(unittest.TestCase):
-    """Tests of one robot_node. Each begins with a working camera and with the motors off."""
-    ROBOT = {}  # parameters
+    """Base class of tests that share a robot_node. Each test begins with a working camera and with the motors off."""
+    ROBOT = {}  # parameters of the block robot
 
     @classmethod
     def setUpClass(cls):
@@ -263,7 +264,7 @@ class SharedRobotCase(unittest.TestCase):
 
     def enterTrial(self, torque=2.0):
         wait_until(lambda: self.robot.enable(True).success, "permission")
-        self.robot.answerAll(torque)  # on a busy machine the first answer may be late
+        self.robot.answerAll(torque)  # on a busy machine the first torque may be late
         self.robot.waitForEffort(torque)
         self.robot.stopAnswering()
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-# robot_node: what the motor gets when joints leave their limits, nobody reports them, or the camera's clock is wrong.
+# Tests of robot_node: joints beyond their limits, missing joint states, and a wrong clock of the camera.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import sys
@@ -18,11 +18,11 @@ from robot_case import LIMIT_S, Listener, RobotCase, SharedRobotCase, wait_until
 CLOCK_DT = 0.1
 HOUR_S = 3600.0
 TRIES = 4
-DELAY_LIMIT_S = 2.0 * CLOCK_DT + 0.05  # from the last good image to the zero
+DELAY_LIMIT_S = 2.0 * CLOCK_DT + 0.05  # from the last valid image to the zero torque
 
 
 class Joints:
-    """100 reports a second, of a gripper and an arm in two messages."""
+    """Publishes 100 joint states per second, of a gripper and of an arm in two messages."""
 
     def __init__(self):
         self.position, self.reporting = 0.0, True
@@ -85,7 +85,7 @@ class RobotLimitsTest(SharedRobotCase):
         self.joints.position = 0.0
         seen = len(self.robot.efforts.messages)
         for _ in range(2):
-            self.robot.images.next()  # which is answered
+            self.robot.images.next()  # the controller answers this image
         self.assertEqual({message.data for message in self.robot.efforts.messages[seen:]}, {0.0})
         wait_until(lambda: self.robot.enable(True).success, "a report")
         self.robot.waitForEffort(2.0)
@@ -110,7 +110,7 @@ class RobotClockTest(RobotCase):
         self.robot.waitForEffort(2.0)
 
     def zeroAfter(self, seen):
-        """Arrival of the first zero after so many efforts."""
+        """Returns the arrival of the first zero after `seen` efforts, or None."""
         efforts = self.robot.efforts
         return next((at for at, effort in list(zip(efforts.times, efforts.messages))[seen:] if effort.data == 0.0), None)
 
@@ -122,11 +122,11 @@ class RobotClockTest(RobotCase):
             delays.append(wait_until(lambda: self.zeroAfter(seen), "zero") - last_good)
             self.robot.camera.showing = True
             self.robot.waitForEffort(2.0)
-        self.assertLessEqual(sorted(delays)[TRIES // 2], DELAY_LIMIT_S)  # a busy machine holds some of them up
+        self.assertLessEqual(sorted(delays)[TRIES // 2], DELAY_LIMIT_S)  # a busy machine delays some of them
         self.assertLessEqual(max(delays), DELAY_LIMIT_S + 0.5)
 
     def refused(self):
-        """(level, number of images refused) by the last diagnosis."""
+        """Returns (level, number of refused images) of the last diagnosis."""
         for array in reversed(self.diagnoses.messages):
             for status in array.status:
                 values = {value.key: value.value for value in status.values}

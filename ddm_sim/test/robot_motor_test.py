@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-# robot_node: what the controller sees of a camera, and what the motors get of its torques, over the wire.
+# Tests of robot_node: images for the controller and torques for the motors.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import select
@@ -19,7 +19,7 @@ from process import Process  # noqa: E402
 from robot_case import DT, LIMIT_S, Listener, RobotCase, SharedRobotCase, wait_until  # noqa: E402
 
 
-# A controller in a process of its own: answers each image with the same torque.
+# A controller for a separate process, which answers each image with the same torque.
 CONTROLLER = """
 import rospy
 from ddm_msgs.msg import Torque
@@ -52,7 +52,7 @@ class RobotMotorTest(SharedRobotCase):
     def test_the_motor_is_off_until_it_is_enabled_and_stops_at_once(self):
         self.robot.answer(2.0)
         self.assertEqual(self.robot.effort(), 0.0)
-        self.assertCancelled()  # a trial that begins while the motors are off
+        self.assertCancelled()  # the episode began while the motors were off
         del self.robot.cancels.messages[:]
         self.robot.enable(True)
         self.robot.answerAll(2.0)
@@ -60,7 +60,7 @@ class RobotMotorTest(SharedRobotCase):
         answer = self.robot.enable(False)
         self.assertTrue(answer.success)
         self.assertIn(" off", answer.message)
-        self.robot.waitForEffort(0.0)  # an effort from before may overtake the answer
+        self.robot.waitForEffort(0.0)  # an earlier effort may arrive after the answer
         self.assertCancelled()
         self.robot.answer(2.0)
         self.assertEqual(self.robot.effort(), 0.0)
@@ -80,7 +80,7 @@ class RobotMotorTest(SharedRobotCase):
     def test_of_each_image_it_is_published_which_torque_acted_and_a_late_one_does_not(self):
         lost = self.robot.images.next().header.stamp
         self.enterTrial()
-        self.assertEqual(self.robot.appliedAt(self.robot.answer(9.0)), [4.0])  # as the motor has it
+        self.assertEqual(self.robot.appliedAt(self.robot.answer(9.0)), [4.0])  # after the saturation
         num_misses = self.robot.numMisses()
         self.assertEqual(self.robot.appliedAt(self.robot.answer(3.0, delay_s=1.1 * DT)), [])
         wait_until(lambda: self.robot.numMisses() > num_misses, "a miss")
@@ -155,7 +155,7 @@ class RobotEndTest(RobotCase):
             robot = self.start(max_torque=[4.0, 2.0])
             self.assertTrue(robot.enable(True).success)
             robot.answer(9.0, -9.0)
-            robot.waitForEffort((4.0, -2.0))  # each motor has its own limit
+            robot.waitForEffort((4.0, -2.0))  # each motor saturates at its own limit
             if number is None:
                 subprocess.run(["rosnode", "kill", "/robot_node"], stdout=subprocess.DEVNULL, check=True, timeout=LIMIT_S)
             else:
@@ -166,22 +166,22 @@ class RobotEndTest(RobotCase):
             self.assertTrue(number or "user request" in robot.process.output)
 
     def test_the_motor_stops_with_the_camera_and_the_node_ends_where_nobody_reads_what_it_logs(self):
-        """As on a terminal that is stopped (Ctrl-S), in a pager, or over a connection that hangs."""
+        """The pipe behaves like a terminal that is stopped (Ctrl-S), a pager, or a connection that hangs."""
         _, writer = os.pipe()
         robot = self.start(written_to=writer)
         self.assertTrue(robot.enable(True).success)
-        threading.Thread(target=os.write, args=(writer, bytes(1 << 20)), daemon=True).start()  # more than a pipe can hold
+        threading.Thread(target=os.write, args=(writer, bytes(1 << 20)), daemon=True).start()  # fills the pipe
         wait_until(lambda: not select.select([], [writer], [], 0)[1], "a full pipe")
-        robot.answer(2.0)  # from here on it has something to log
+        robot.answer(2.0)  # causes log messages
         robot.waitForEffort(2.0)
         robot.camera.showing = False
         robot.waitForEffort(0.0)
         robot.process.send(signal.SIGINT)
-        self.assertEqual(robot.process.waitForEnd(LIMIT_S), 0)  # it gives up on the terminal after ten seconds
+        self.assertEqual(robot.process.waitForEnd(LIMIT_S), 0)  # at most ten seconds after the stop
         wait_until(lambda: robot.efforts.messages[-1].data == 0.0, "zero")
 
 
 if __name__ == "__main__":
-    signal.signal(signal.SIGHUP, signal.SIG_DFL)  # nodes inherit it, and nohup ignores it
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)  # nodes inherit the handler, and nohup ignores the signal
     rospy.init_node("robot_motor_test")
     rosunit.unitrun("ddm_sim", "robot_motor", "__main__")

@@ -1,4 +1,4 @@
-// Tests of the parameters of a robot: what is refused, and that the parameter reference has the defaults.
+// Tests of the parameters of a robot: refused values, and the defaults in the parameter reference.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_robot/robot_options.h"
 
@@ -14,7 +14,7 @@ TEST(RobotOptions, TheParameterReferenceHasTheDefaults) {
   testing::expectDefaults<RobotOptions>(DDM_SIM_SOURCE_DIR "/config/robot.yaml", "robot");
 }
 
-/// The problems of the block `robot` with these keys.
+/// Returns the problems of the block `robot` with these keys.
 std::vector<std::string> problemsOf(const std::string& keys, RobotOptions* options = nullptr) {
   ParamReader reader(YAML::Load("robot: {" + keys + "}"));
   const auto read = reader.read<RobotOptions>("robot");
@@ -50,7 +50,7 @@ TEST(RobotOptions, EachKeyHasItsRule) {
       {"position_limits",
        {"[[]]", "[[1]]", "[[1, 1]]", "[[2, 1]]", "[[.nan, 1]]", "[[0, .nan]]", "[[0, 1, 2]]"}},
       {"speed_limit", {"0.0", "-1.0", ".nan"}},
-      // Names decide where several joints have limits.
+      // Names are required if several joints have limits.
       {"joints",
        {"[arm]", "[], position_limits: [[0, 1], [0, 1]]",
         "[arm, arm], position_limits: [[0, 1], [0, 1]]"}}};

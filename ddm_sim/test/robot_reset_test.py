@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-# robot_node: how a robot comes to its start and its goal, and what is refused.
+# Tests of robot_node: reset, goal image, and refused requests.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import re
@@ -28,7 +28,7 @@ class RobotResetTest(RobotCase):
 
     def test_a_reset_asks_for_goal_start_and_motors_in_turn(self):
         robot = self.start("_robot/goal_file:=" + self.goal)
-        self.assertFalse(robot.resetDone().success)  # nobody has asked
+        self.assertFalse(robot.resetDone().success)  # no reset is waiting
         answer = robot.reset()
         robot.process.waitForText("take_goal", LIMIT_S)
         wait_until(lambda: robot.takeGoal().success, "a camera")
@@ -62,7 +62,7 @@ class RobotResetTest(RobotCase):
         self.assertTrue(robot.enable(True).success)
         reset = answer()
         self.assertTrue(reset.success, reset.message)
-        self.assertLessEqual(heard[0], 2)  # one may have been on its way
+        self.assertLessEqual(heard[0], 2)  # a message may have been in transit
         self.assertEqual(robot.effort(), 0.0)
 
     def test_a_stop_takes_the_motor_from_the_service_of_the_user(self):
@@ -76,7 +76,7 @@ class RobotResetTest(RobotCase):
 
         def goHome(_):
             called.set()
-            released.wait(2.0 * LIMIT_S)  # longer than anybody below waits
+            released.wait(2.0 * LIMIT_S)  # longer than all waits below
             return TriggerResponse(success=True)
 
         self.offer("go_home", goHome)

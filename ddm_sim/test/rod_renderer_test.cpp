@@ -1,4 +1,4 @@
-// Tests of the rod renderer: what the image shows, how it moves, its symmetry and grey values.
+// Tests of the rod renderer: content of the image, motion, symmetry and grey values.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_sim/rod_renderer.h"
 
@@ -16,7 +16,7 @@ constexpr int kSize = 51;
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// A rod of 1 m that is fixed in the middle of the picture.
+/// A rod of 1 m that begins in the middle of the image.
 Rod rodAt(double angle) { return {Eigen::Vector2d::Zero(), angle, 1.0}; }
 
 Bytes render(double angle) { return RodRenderer(kSize, RodLook()).render({rodAt(angle)}).bytes; }
@@ -45,7 +45,7 @@ TEST(RodRenderer, RoundsTheGreyValueOfThePublishedFormula) {
       const double x = (j - 25) * 2.4 / kSize;
       const double y = (25 - i) * 2.4 / kSize;
       const double along = x * std::sin(angle) - y * std::cos(angle);
-      const double beyond = along - std::clamp(along, 0.0, 1.0);  // of the nearer end
+      const double beyond = along - std::clamp(along, 0.0, 1.0);  // distance beyond the nearer end
       const double across = x * std::cos(angle) + y * std::sin(angle);
       const double grey = std::clamp((0.1 - std::hypot(beyond, across)) / 0.2 + 0.5, 0.0, 1.0);
       ASSERT_NEAR(image[i * kSize + j], 255 * grey, 0.5 + 1e-9) << "row " << i << ", column " << j;
@@ -75,7 +75,7 @@ TEST(RodRenderer, StartsARodWhereItSays) {
   const Bytes middle = renderer.render({{Eigen::Vector2d::Zero(), 0.6, 0.5}}).bytes;
   const Bytes moved = renderer.render({{{kShift * pixel, 2 * pixel}, 0.6, 0.5}}).bytes;
   for (int i = 0; i < kSize - 2; ++i) {
-    for (int j = 0; j < kSize - kShift; ++j) {  // to the right, and two rows up
+    for (int j = 0; j < kSize - kShift; ++j) {  // shifted to the right, and two rows up
       ASSERT_NEAR(moved[i * kSize + j + kShift], middle[(i + 2) * kSize + j], 1) << i << ", " << j;
     }
   }

@@ -1,4 +1,4 @@
-// Tests of what sim_node publishes of cameras: the view for people, camera_info and tf.
+// Tests of the camera data that sim_node publishes: the view for people, camera_info and tf.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_msgs/testing/node_main.h>
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ namespace {
 constexpr std::size_t kFrames = 12;
 const std::vector<double> kStart{0.3, 2.0};
 
-/// All messages of a topic since it was made.
+/// All messages of a topic since the construction.
 template <class Message>
 class Collected {
  public:
@@ -51,7 +51,7 @@ std::set<std::string> topicsThatThereAre() {
 
 class SceneCameras : public SimNodeTest {
  protected:
-  /// Runs a trial to its end under the same torques each time.
+  /// Runs an episode to its end, with the same torques in each call.
   static void runTrial() {
     client_->forget();
     client_->reset(kFrames, kStart);
@@ -74,7 +74,8 @@ TEST_F(SceneCameras, LatchTheCameraInfoOfTheLearnersPictureAndOfTheView) {
   EXPECT_EQ(learner.height, 51U);
   EXPECT_EQ(people.width, 640U);
   EXPECT_EQ(people.height, 480U);
-  EXPECT_NEAR(people.K[0] / learner.K[0], 480.0 / 51.0, 1e-9);  // one lens
+  // Both images have the same field of view.
+  EXPECT_NEAR(people.K[0] / learner.K[0], 480.0 / 51.0, 1e-9);
   EXPECT_EQ(learner.header.frame_id, "front_optical_frame");
   EXPECT_EQ(people.header.frame_id, "front_optical_frame");
 }
@@ -137,7 +138,7 @@ TEST_F(SceneCameras, InventNoLensForAPlantWithoutOneAndShowPeopleWhatItsCameraSh
   Images view(plain + topics::kView);
   ASSERT_TRUE(client_->waitUntil([&] { return image.connected() && view.connected(); }));
   ddm_msgs::Reset call;
-  ASSERT_TRUE(client_->waitUntil([&] {  // until both subscriptions are known to sim_node
+  ASSERT_TRUE(client_->waitUntil([&] {  // repeated until both subscriptions are connected
     EXPECT_TRUE(ros::service::call(plain + topics::kReset, call));
     return !image.messages.empty() && !view.messages.empty();
   }));

@@ -1,4 +1,4 @@
-// Test client of sim_node: collects what it publishes and waits for conditions with a limit.
+// Test client of sim_node: collects its messages and waits for conditions with a time limit.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -38,7 +38,8 @@ class SimClient {
   void advertise() { torque_ = nh_.advertise<ddm_msgs::Torque>(topics::kTorque, 1000); }
   void stopPublishing() { torque_.shutdown(); }
 
-  /// Everything is connected, the log too: a refused reset is seen in it. No trial has started.
+  /// Waits until all topics are connected, including the log, in which tests find refused resets.
+  /// Begins no episode.
   bool connect() {
     if (!reset_.waitForExistence(ros::Duration(-1)) || !waitForTorqueSubscriber()) return false;
     return waitUntil([this] {
@@ -55,7 +56,7 @@ class SimClient {
   }
 
   /// Handles callbacks until the condition holds.
-  /// @return false if it does not within the limit
+  /// @return false if the condition does not hold within the limit
   bool waitUntil(const std::function<bool()>& condition, double limit = 12.0) {
     const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(limit);
     while (!condition()) {
@@ -125,7 +126,8 @@ class SimClient {
   ros::ServiceClient reset_;
 };
 
-/// Tests of one sim_node: they share a client, which forgets before each of them.
+/// Fixture for tests of one sim_node. The tests share a client, which discards its messages before
+/// each test.
 class SimNodeTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {

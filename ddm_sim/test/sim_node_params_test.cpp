@@ -1,4 +1,4 @@
-// Tests of sim_node with bad parameters: it says what is wrong and ends with an error.
+// Tests of sim_node with invalid parameters: it reports them and exits with an error.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_msgs/testing/node_main.h>
 #include <ddm_msgs/testing/refused_params.h>

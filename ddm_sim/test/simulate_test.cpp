@@ -1,4 +1,4 @@
-// Tests of the program simulate as a user calls it: files in, files and exit code out.
+// Tests of the program simulate from the command line: input files, output files and exit codes.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
@@ -33,7 +33,8 @@ std::string contents(const fs::path& path) {
   return text.str();
 }
 
-/// Rows of the trajectory: step, time, components of the state. Checks header and columns.
+/// Rows of the trajectory: step, time, components of the state. Checks the header and the number of
+/// columns.
 std::vector<std::vector<double>> rows(
     const std::string& csv, const std::string& header = "step,time_s,angle_rad,rate_rad_per_s",
     std::size_t num_columns = 4) {
@@ -56,7 +57,7 @@ const char kTileHeader[] = "step,time_s,x_px,y_px";
 
 class Simulate : public ::testing::Test {
  protected:
-  // The package is looked up in the sources: the test needs no workspace to be sourced.
+  // Finds the package in the source folder, so that the test needs no sourced workspace.
   void SetUp() override { setenv("ROS_PACKAGE_PATH", DDM_SIM_SOURCE_DIR, /*overwrite=*/1); }
 
   /// @param setting  shell words in front of the command: assignments, or `unset ...;`
@@ -81,7 +82,7 @@ TEST_F(Simulate, WritesTheTrajectoryOfThePlant) {
     if (t > 0) plant.step(Eigen::VectorXd::Constant(1, torques[t - 1]));
     EXPECT_EQ(table[t][0], t);
     EXPECT_NEAR(table[t][1], 0.2 * t, 1e-15);
-    EXPECT_EQ(table[t][2], plant.state()[0]);  // 17 digits: the same double
+    EXPECT_EQ(table[t][2], plant.state()[0]);  // 17 digits give the same double
     EXPECT_EQ(table[t][3], plant.state()[1]);
   }
 }
@@ -97,7 +98,8 @@ TEST_F(Simulate, TakesAWholeStartStateInOneOption) {
 TEST_F(Simulate, WritesTheTrajectoryAndThePicturesOfTheMovingTile) {
   const fs::path frames = folder_ / "frames";
   const Outcome result = run("--plant moving_tile --start 44.25,6 --frames " + frames.string(),
-                             "dx_px,dy_px\n4,-0.5\n-100,2\n0,-5\n");  // bounces, saturates, bounces
+                             // reflection, saturation, reflection
+                             "dx_px,dy_px\n4,-0.5\n-100,2\n0,-5\n");
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const auto table = rows(result.out, kTileHeader);
   const std::vector<std::vector<double>> expected{
@@ -201,7 +203,7 @@ TEST_F(SimulateModelFile, DescribesAModelFile) {
   EXPECT_EQ(about["torque"][0].as<std::string>(), "force_n");
   EXPECT_EQ(about["joints"][0]["kind"].as<std::string>(), "length");
   EXPECT_EQ(about["evaluation_steps"].as<int>(), 200);
-  EXPECT_TRUE(contains(about["renderer"].as<std::string>(), "llvmpipe"));  // software
+  EXPECT_TRUE(contains(about["renderer"].as<std::string>(), "llvmpipe"));  // the software renderer
 }
 
 #if !DDM_HAS_MUJOCO
@@ -221,7 +223,8 @@ TEST_F(Simulate, LetsALaterConfigurationFileWin) {
       run("--plant pendulum --config " + first + " --config " + second, "torque_nm\n6\n");
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(rows(result.out).at(1)[1], 0.25);
-  EXPECT_EQ(rows(result.out).at(1)[3], 1.0 - std::exp(-0.75));  // u = 1, not 6
+  // With u = 1, because the value 6 saturates.
+  EXPECT_EQ(rows(result.out).at(1)[3], 1.0 - std::exp(-0.75));
 }
 
 TEST_F(Simulate, ListsTheKnownPlantsWhenThePlantIsUnknown) {

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-# A simulated robot with two motors: torques move the tile in both directions, and the camera shows it.
+# Test of a simulated robot with two motors: torques move the tile in both directions, as the images show.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import sys
@@ -20,7 +20,7 @@ TORQUE = [1.0, -0.5]  # to the right and up [pixels per step]
 
 
 def bright(image):
-    """(x, y) of the middle of the bright pixels."""
+    """Returns (x, y) of the centre of the bright pixels [pixels]."""
     pixels = [divmod(i, image.width) for i, grey in enumerate(bytearray(image.data)) if grey > 160]
     return [0.5 + sum(pixel[axis] for pixel in pixels) / len(pixels) for axis in (1, 0)]
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-# A recorder that falls behind the controller by a whole trial still gets every image of it.
+# Test of a slow subscriber: a recorder that is an episode behind the controller still receives every image.
 # SPDX-License-Identifier: BSD-3-Clause
 import io
 import os
@@ -22,12 +22,12 @@ from robot_case import LIMIT_S, Listener, wait_until  # noqa: E402
 
 TOPIC = "camera/image_raw"
 NUM_STEPS = 200
-SMALL = 4096  # a buffer for two images [bytes]
-SEGMENT = 536  # as small as a network may ask for: the kernel sizes the sender's buffer by it [bytes]
+SMALL = 4096  # buffer size for two images [bytes]
+SEGMENT = 536  # smallest segment size of TCP, which limits the sender's buffer in the kernel [bytes]
 
 
 class SlowReader:
-    """A subscriber whose connection stands still until it reads."""
+    """A subscriber that leaves its connection unread until next() is called."""
 
     def __init__(self, topic):
         topic = rospy.resolve_name(topic)
@@ -40,7 +40,7 @@ class SlowReader:
         self._socket.connect((host, port))
         write_ros_handshake_header(self._socket, {"callerid": "/slow_reader", "topic": topic, "md5sum": Image._md5sum,
                                                   "type": Image._type})
-        read_ros_handshake_header(self._socket, io.BytesIO(), 1)  # and no byte of the first image
+        read_ros_handshake_header(self._socket, io.BytesIO(), 1)  # one byte at a time, to leave the first image unread
 
     def _take(self, size):
         taken = b""

@@ -1,4 +1,4 @@
-// Tests of stamps: whether those of a camera can be trusted, and which of its images are acted on.
+// Tests of stamps: which images are accepted, and which are selected for the control loop.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_robot/stamp_check.h"
 
@@ -15,12 +15,12 @@ namespace {
 constexpr double kDt = 0.2;
 constexpr double kPeriod = 1.0 / 30.0;
 constexpr double kHour = 3600.0;
-const Stamp kEpoch = std::chrono::hours(24 * 365 * 50);  // of the wall clock, when a test begins
+const Stamp kEpoch = std::chrono::hours(24 * 365 * 50);  // wall clock at the begin of a test
 
 SteadyTime at(double seconds) { return SteadyTime(std::chrono::hours(5) + fromSeconds(seconds)); }
 Stamp clockAt(double seconds) { return kEpoch + fromSeconds(seconds); }
 
-/// Camera and motor of a robot as robot_node connects them, without its messages.
+/// Camera and motor of a robot, connected as in robot_node but without messages.
 class Robot {
  public:
   Robot() {
@@ -28,10 +28,10 @@ class Robot {
     gate_.effort(at(0.0));
   }
 
-  /// An image arrives and is answered after 10 ms.
-  /// @param error  of the clock that stamps it [s]
-  /// @param delay  more than the 15 ms that others take from camera to node [s]
-  /// @return       whether it was accepted
+  /// An image arrives, and its torque follows after 10 ms.
+  /// @param error  error of the clock that stamps the image [s]
+  /// @param delay  delay beyond the usual 15 ms from camera to node [s]
+  /// @return       whether the image was accepted
   bool image(double now, double error = 0.0, double delay = 0.0) {
     const Stamp stamp = clockAt(now - 0.015 - delay + error);
     if (!stamps_.take(at(now), clockAt(now), stamp).empty()) return false;
@@ -41,15 +41,15 @@ class Robot {
     return true;
   }
 
-  /// 30 images a second.
-  /// @return when the next one is due
+  /// Shows 30 images per second.
+  /// @return time at which the next image is due
   double images(double begin, double end, double error = 0.0) {
     double now = begin;
     for (; now < end; now += kPeriod) image(now, error);
     return now;
   }
 
-  /// @return for how long the motor still gets a torque, looked at every 10 ms [s]
+  /// @return time for which the motor still receives a torque, checked every 10 ms [s]
   double timeUntilZero(double now) {
     double passed = 0.0;
     while (gate_.effort(at(now + passed)).at(0) != 0.0 && passed < 10.0) passed += 0.01;
@@ -143,7 +143,7 @@ TEST(StampCheck, AJitteryTransportRefusesNothing) {
   double arrival = 0.0;
   for (int i = 0; i < 3000; ++i) {
     const double taken = i * kPeriod;
-    arrival = std::max(arrival, taken + delay(engine));  // a transport keeps the order
+    arrival = std::max(arrival, taken + delay(engine));  // a transport keeps the order of images
     ASSERT_EQ(check.take(at(arrival), clockAt(arrival), clockAt(taken)), "") << i;
     ASSERT_LE(check.taken(), at(arrival));
   }
@@ -171,7 +171,7 @@ TEST(StampCheck, AnImageThatComesTwiceOrOutOfOrderIsRefusedOnce) {
   EXPECT_EQ(check.numRefused(), 2);
 }
 
-/// Steps between the images that are picked of those at these times [s].
+/// Intervals between the selected images of a sequence of images at these times [s].
 std::vector<double> stepsOf(ImagePicker* picker, const std::vector<double>& images) {
   std::vector<double> picked;
   for (const double image : images) {

@@ -1,4 +1,4 @@
-// Tests of the gate between a controller and a motor: what acts, and what brings zero torque.
+// Tests of the gate between a controller and a motor: which torques act, and what sets zero torque.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_robot/torque_gate.h"
 
@@ -12,8 +12,8 @@ namespace {
 
 using State = TorqueGate::State;
 
-/// dt is 200 ms; times are in milliseconds since some moment. An image that was taken at one of
-/// them has a stamp of its own, so that no deadline can depend on stamps.
+/// dt is 200 ms; times are in milliseconds since an arbitrary moment. The stamps of images are
+/// unrelated to these times, so that no deadline can depend on stamps.
 class TorqueGateTest : public ::testing::Test {
  protected:
   static SteadyTime at(int ms) {
@@ -27,17 +27,17 @@ class TorqueGateTest : public ::testing::Test {
   bool answer(int now, int stamp, double torque) {
     return gate_.takeTorque(at(now), stampOf(stamp), {torque});
   }
-  /// Of one motor.
+  /// The effort of the single motor.
   double effort(int now) { return gate_.effort(at(now)).at(0); }
 
-  /// Armed, and in a trial with the torque 2 for the image at 0.
+  /// Arms the gate and begins an episode with the torque 2 for the image at time 0.
   void follow() {
     ASSERT_EQ(gate_.arm(at(0)), "");
     showImage(0);
     ASSERT_TRUE(answer(20, 0, 2.0));
     ASSERT_EQ(effort(20), 2.0);
   }
-  /// The same with other options.
+  /// As follow(), with other options.
   void followWith(const RobotOptions& options) {
     gate_ = TorqueGate(options);
     gate_.effort(at(0));
@@ -61,7 +61,7 @@ TEST_F(TorqueGateTest, ATorqueInTimeActsUntilTheNext) {
   EXPECT_EQ(gate_.state(), State::kFollowing);
   showImage(200);
   EXPECT_EQ(effort(399), 2.0);
-  EXPECT_TRUE(answer(400, 200, -1.0));  // as late as it may be
+  EXPECT_TRUE(answer(400, 200, -1.0));  // the latest time at which the torque is accepted
   EXPECT_EQ(effort(400), -1.0);
   EXPECT_EQ(gate_.numMisses(), 0);
   EXPECT_EQ(gate_.numAnswers(), 2);
@@ -190,12 +190,12 @@ TEST_F(TorqueGateTest, StopIsZeroAtOnceAndNothingActsUntilArmedAgain) {
   follow();
   gate_.stop("service enable");
   EXPECT_EQ(effort(21), 0.0);
-  gate_.endTrial();  // as the trial does when it is cancelled
+  gate_.endTrial();  // a cancelled episode ends in this way
   EXPECT_FALSE(gate_.armed());
   showImage(200);
   EXPECT_FALSE(answer(210, 200, 3.0));
   ASSERT_EQ(gate_.arm(at(0)), "");
-  EXPECT_FALSE(answer(215, 0, 3.0));  // of before
+  EXPECT_FALSE(answer(215, 0, 3.0));  // for an image from before the stop
   EXPECT_EQ(effort(220), 0.0);
   showImage(400);
   EXPECT_TRUE(answer(410, 400, 1.0));
@@ -243,7 +243,7 @@ TEST_F(TorqueGateTest, NothingActsDuringAResetArmedBeforeOrMeanwhile) {
   showImage(200);
   EXPECT_FALSE(answer(210, 200, 3.0));
   gate_.endReset();
-  EXPECT_FALSE(answer(215, 200, 3.0));  // an image of before
+  EXPECT_FALSE(answer(215, 200, 3.0));  // for an image from before the reset
   showImage(400);
   EXPECT_TRUE(answer(410, 400, 1.0));
 }
@@ -253,7 +253,7 @@ TEST_F(TorqueGateTest, TheTorqueChangesNoFasterThanTheSlewRateButStopsAtOnce) {
   options.slew_rate = {20.0};
   followWith(options);
   EXPECT_TRUE(answer(10, 0, 2.0));
-  EXPECT_NEAR(effort(20), 0.4, 1e-9);  // 20 ms after the last look, at 0
+  EXPECT_NEAR(effort(20), 0.4, 1e-9);  // 20 ms after the previous call, at 0
   EXPECT_NEAR(effort(50), 1.0, 1e-9);
   EXPECT_EQ(effort(150), 2.0);
   showImage(200);
@@ -271,7 +271,7 @@ class TwoMotorTorqueGateTest : public TorqueGateTest {
 
   void SetUp() override { restart({0.0}); }
 
-  /// Armed, with an image at 0 to answer.
+  /// Arms the gate and shows an image at time 0.
   void restart(const std::vector<double>& slew_rate) {
     RobotOptions options;
     options.max_torque = {4.0, 2.0};
@@ -308,9 +308,9 @@ TEST_F(TwoMotorTorqueGateTest, EveryStopIsZeroForBothMotors) {
       {[this] { gate_.endTrial(); }, 111},
       {[this] { gate_.beginReset(); }, 111},
       {[this] { gate_.setPublishers(2); }, 111},
-      {[this] { gate_.takeTorque(at(110), stampOf(0), {1.0}); }, 111},  // of one motor
-      {[] {}, 401},                                                     // images stop
-      {[this] { showImage(200); }, 401}};                               // no answer
+      {[this] { gate_.takeTorque(at(110), stampOf(0), {1.0}); }, 111},  // one number for two motors
+      {[] {}, 401},                                                     // no further image
+      {[this] { showImage(200); }, 401}};                               // no torque for this image
   for (std::size_t i = 0; i < stops.size(); ++i) {
     restart({20.0});
     EXPECT_TRUE(answer(10, 0, {1.0, -9.0}));
@@ -322,7 +322,7 @@ TEST_F(TwoMotorTorqueGateTest, EveryStopIsZeroForBothMotors) {
   }
 }
 
-/// The joint may be at -2 to 1 and is reported at 0.
+/// A joint with the limits [-2, 1], which is reported at 0.
 class GuardedTorqueGateTest : public TorqueGateTest {
  protected:
   void SetUp() override {

@@ -1,4 +1,4 @@
-// Tests of the arm: an independent integrator, energy, limits that are known, goal and picture.
+// Tests of the arm: an independent integrator, energy, known limits, goal and image.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_sim/two_link.h"
 
@@ -17,7 +17,7 @@
 namespace ddm {
 namespace {
 
-/// Links that differ in everything, so that no two terms of the equations are mixed up unseen.
+/// Links that differ in all parameters, so that a mix-up of two terms changes the result.
 TwoLinkOptions lopsided() {
   TwoLinkOptions options;
   options.gravity = 9.82;
@@ -36,13 +36,14 @@ Eigen::Vector4d stepOf(const TwoLinkOptions& options, const Eigen::Vector4d& sta
   return arm.state();
 }
 
-/// Euler-Lagrange in the absolute angles (a, b) of both links, which is not the formula of the code
-/// under test:
+/// Euler-Lagrange equations in the absolute angles (a, b) of both links. The code under test uses
+/// relative angles:
 ///
 ///   T = (m_1 / 3 + m_2) l_1^2 a'^2 / 2 + m_2 l_2^2 b'^2 / 6 + m_2 l_1 l_2 cos(a - b) a' b' / 2
 ///   V = -g (m_1 / 2 + m_2) l_1 cos a - g m_2 l_2 cos(b) / 2
 ///
-/// The elbow's torque and friction act on the lower link, and against them on the upper one.
+/// The torque and the friction of the elbow act on the lower link, and with the opposite sign on
+/// the upper link.
 class Reference {
  public:
   explicit Reference(const TwoLinkOptions& o)
@@ -87,7 +88,7 @@ class Reference {
   }
 
   TwoLinkOptions o_;
-  double upper_, lower_, coupling_;  ///< of the inertia matrix [kg m^2]
+  double upper_, lower_, coupling_;  ///< entries of the inertia matrix [kg m^2]
   double weight_a_, weight_b_;       ///< [N m]
 };
 
@@ -122,7 +123,7 @@ TEST(TwoLink, HasItsGoalStraightUpAndTheLargerAngleForItsError) {
   EXPECT_NEAR(error(kPi + 3 * kDegree, -7 * kDegree), 7.0, 1e-12);
   EXPECT_NEAR(error(kPi - 8 * kDegree, 7 * kDegree), 8.0, 1e-12);
   EXPECT_NEAR(error(0.0, 0.0), 180.0, 1e-12);
-  EXPECT_NEAR(error(-kPi, 4 * kPi + 2 * kDegree), 2.0, 1e-12);  // the short way round, both
+  EXPECT_NEAR(error(-kPi, 4 * kPi + 2 * kDegree), 2.0, 1e-12);  // both along the shorter arc
   EXPECT_NEAR(error(kPi, kPi), 180.0, 1e-12);
 }
 
@@ -135,13 +136,14 @@ TEST(TwoLink, LocatesElbowAndTip) {
   };
   EXPECT_LT((places(0.0, 0.0) - Eigen::Vector4d(0.0, -0.5, 0.0, -0.75)).norm(), 1e-15);
   EXPECT_LT((places(kPi, 0.0) - Eigen::Vector4d(0.0, 0.5, 0.0, 0.75)).norm(), 1e-15);
-  // Upper link to the right, lower link a quarter turn further: up.
+  // The upper link points to the right, and the lower link is turned by a further quarter: it
+  // points up.
   EXPECT_LT((places(kPi / 2, kPi / 2) - Eigen::Vector4d(0.5, 0.0, 0.5, 0.25)).norm(), 1e-15);
 }
 
 TEST(TwoLink, LooksLikeOneRodWhereItIsStraight) {
   const TwoLink arm{TwoLinkOptions()};
-  const Pendulum rod{PendulumOptions()};  // as long as both links
+  const Pendulum rod{PendulumOptions()};  // as long as both links together
   for (const double angle : {0.0, kPi, 0.3}) {
     const Picture of_arm = arm.render(Eigen::Vector4d(angle, 0.0, 1.0, 1.0));
     const Picture of_rod = rod.render(Eigen::Vector2d(angle, 0.0));

@@ -1,4 +1,4 @@
-// new_plant: makes a plant file from a model file, and shows what it proposes.
+// new_plant: proposes a plant file for a model file, and draws a contact sheet of its images.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_common/image_codec.h>
 #include <ddm_common/plain_file.h>
@@ -56,7 +56,7 @@ Texts partsOf(const std::string& text) {
   return parts;
 }
 
-/// @throws po::error naming a file that exists and must not be replaced
+/// @throws po::error naming an output file that exists and must not be replaced
 void requireRoom(const Arguments& arguments) {
   const fs::path folder = fs::absolute(arguments.out).parent_path();
   if (!fs::is_directory(folder)) {
@@ -69,8 +69,8 @@ void requireRoom(const Arguments& arguments) {
   }
 }
 
-/// @return false if only help was asked for, and printed
-/// @throws po::error for wrong use
+/// @return false if the only option is --help, whose text has been printed
+/// @throws po::error if the arguments are wrong
 bool parse(int argc, char** argv, Arguments* arguments) {
   std::string motors, max_torque;
   po::options_description options(kAbout);
@@ -106,9 +106,9 @@ bool parse(int argc, char** argv, Arguments* arguments) {
   return true;
 }
 
-constexpr int kCell = 204;  // four times the learner's image [pixels]
+constexpr int kCell = 204;  // size of an image, four times the learner's [pixels]
 constexpr int kColumns = 6;
-constexpr int kLine = 22;  // of text
+constexpr int kLine = 22;  // height of a line of text [pixels]
 
 cv::Mat colourOf(Picture picture) {
   cv::Mat out(picture.height, picture.width, picture.channels == 1 ? CV_8UC1 : CV_8UC3,
@@ -117,7 +117,7 @@ cv::Mat colourOf(Picture picture) {
   return out.clone();
 }
 
-/// Poses in rows: large, and below as the learner sees them.
+/// Draws several poses in rows: a large image of each pose, and the learner's image below.
 void writeContactSheet(const PlantProposal& proposal, const Plant& plant, const std::string& file) {
   std::vector<std::pair<std::string, Eigen::VectorXd>> poses = {{"start", plant.info().start},
                                                                 {"goal", plant.info().goal}};
@@ -187,7 +187,7 @@ void printCheck(const mjModel& model, const PlantProposal& proposal, const Plant
         "the file ties bodies by <connect> or <weld>, which the proposed start and goal ignore: "
         "write positions that keep these ties into plant/start and plant/goal");
   }
-  constexpr double kNarrow = 0.1;  // a usual range in radians, taken for degrees [rad]
+  constexpr double kNarrow = 0.1;  // a usual range in radians that MuJoCo has read as degrees [rad]
   for (const ModelJoint& joint : proposal.joints) {
     if (!joint.isHinge() || joint.upper - joint.lower >= kNarrow) continue;
     warn("the range of " + joint.name + " is only " + rangeOf(joint) +
@@ -209,7 +209,8 @@ void newPlant(const Arguments& arguments) {
   const PlantProposal proposal = proposePlant(model, arguments.motors, arguments.max_torque);
   printProposal(proposal);
 
-  // In the folder of the final file, from which its relative paths count. Removed if anything fails.
+  // The draft lies in the folder of the final file, because relative paths count from there. It is
+  // removed if a later step fails.
   const std::string draft = arguments.out + ".unfinished";
   const std::shared_ptr<void> cleanup(nullptr, [&draft](void*) {
     std::error_code ignored;

@@ -1,4 +1,4 @@
-// Numbers on the command line and on the standard input of a tool: CSV text.
+// Reads numbers from the command line and from CSV text on the standard input of a program.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -14,8 +14,8 @@
 
 namespace ddm {
 
-/// Finite decimal numbers with commas between them; each as parseNumber() takes it.
-/// @return false, with `values` unchanged, if there are not exactly `count` or one is anything else
+/// Parses finite decimal numbers, separated by commas, by parseNumber().
+/// @return false, with `values` unchanged, if the text does not consist of exactly `count` numbers
 inline bool parseNumbers(const std::string& text, Eigen::Index count, Eigen::VectorXd* values) {
   std::vector<std::string> words;
   boost::split(words, text, boost::is_any_of(","));
@@ -28,12 +28,12 @@ inline bool parseNumbers(const std::string& text, Eigen::Index count, Eigen::Vec
   return true;
 }
 
-/// The standard input of a tool: a header, then a row of finite numbers in each line. Lines may end
-/// in CR LF, and empty lines at the end do not count.
-/// @param names  of the columns; joined by commas, the header that must stand there
-/// @param what   a row is, "a torque", for messages
-/// @return rows, each [names.size() x 1]                                [lines after the header]
-/// @throws std::runtime_error with the number of the line, what stands there and the rule
+/// Reads the standard input of a program: a header, then one row of finite numbers per line. Lines
+/// may end in CR LF. Empty lines at the end are ignored.
+/// @param names  names of the columns; the header must consist of these names, separated by commas
+/// @param what   description of a row for error messages: "a torque"
+/// @return rows, each [names.size() x 1]                                   [lines after the header]
+/// @throws std::runtime_error with the line number, the content of the line and the rule
 inline std::vector<Eigen::VectorXd> readNumbers(std::istream& input,
                                                 const std::vector<std::string>& names,
                                                 const std::string& what) {
@@ -52,7 +52,7 @@ inline std::vector<Eigen::VectorXd> readNumbers(std::istream& input,
   std::vector<Eigen::VectorXd> rows;
   for (std::size_t line = 2; std::getline(input, text); ++line) {
     boost::trim(text);
-    if (text.empty() && (input >> std::ws).eof()) break;  // empty lines at the end
+    if (text.empty() && (input >> std::ws).eof()) break;  // empty lines at the end are ignored
     Eigen::VectorXd row;
     if (!parseNumbers(text, size, &row)) fail(line, rule, text);
     rows.push_back(row);

@@ -1,4 +1,4 @@
-// The plant file that new_plant writes.
+// Writes the plant file that new_plant proposes.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plant_text.h"
 
@@ -41,7 +41,8 @@ std::string rangeOf(const ModelJoint& joint) {
 
 namespace {
 
-/// Relative where the model lies with the plant file or below, so that their folder can be moved.
+/// A relative path if the model lies in the folder of the plant file or below it, so that the
+/// folder can be moved. Otherwise an absolute path.
 std::string modelPath(const std::string& named, const std::string& plant_file) {
   if (named.rfind("package://", 0) == 0) return named;
   const fs::path model = fs::absolute(named).lexically_normal();
@@ -62,7 +63,7 @@ std::string quoted(const Texts& texts) {
   return "[" + join(all, ", ") + "]";
 }
 
-/// A comment, broken into lines.
+/// Makes a YAML comment, with line breaks.
 std::string comment(const std::string& text, const std::string& indent = "  ") {
   constexpr std::size_t kColumns = 100;
   std::istringstream words(text);
@@ -96,7 +97,7 @@ std::string plantText(const std::string& model, const std::string& plant_file,
   }
   const bool metres = !proposal.joints.front().isHinge() && options.error_joints.empty();
   std::ostringstream out;
-  // A key with its meaning and the reason for its value.
+  // Writes a key, and above it a comment with the meaning of the key and the reason for its value.
   const auto write = [&](const char* key, const std::string& value, const std::string& meaning) {
     const auto why = proposal.reasons.find(key);
     const bool set = std::count(proposal.to_set.begin(), proposal.to_set.end(), key) > 0;

@@ -1,4 +1,4 @@
-// The plant file that new_plant writes.
+// Writes the plant file that new_plant proposes.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -9,16 +9,16 @@
 
 namespace ddm {
 
-/// The contact sheet beside a plant file.
+/// Name of the contact sheet (PNG) beside a plant file.
 std::string pictureFile(const std::string& plant_file);
 
 std::string number(double value, const char* format = "%.7g");
 std::string list(const std::vector<double>& values);
 
-/// "-1 to 1 rad", or "no limits".
+/// Range of a joint as text: "-1 to 1 rad", or "no limits".
 std::string rangeOf(const ModelJoint& joint);
 
-/// A plant file with the reason for each value.
+/// Content of a plant file, with the reason for each value as a comment.
 std::string plantText(const std::string& model, const std::string& plant_file,
                       const PlantProposal& proposal);
 

@@ -1,4 +1,4 @@
-// simulate: moves a plant under given torques, without a master. Torques in, trajectory out.
+// simulate: reads torques, simulates a plant without a ROS master, and writes the trajectory.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_common/image_codec.h>
 #include <ddm_plant_plugin/picture_message.h>
@@ -45,15 +45,16 @@ constexpr char kAbout[] =
 
 struct Arguments {
   std::string plant;
-  boost::optional<std::string> start;   ///< whole start state
-  boost::optional<std::string> target;  ///< place to reach
-  std::string frames;                   ///< folder, empty = none
-  bool describe = false;                ///< say what the plant is instead
+  boost::optional<std::string> start;   ///< initial state: all components
+  boost::optional<std::string> target;  ///< target point of the goal
+  std::string frames;                   ///< folder for the rendered images; empty: no images
+  /// Print a description of the plant instead of a trajectory.
+  bool describe = false;
   std::vector<std::string> configs;
 };
 
-/// @return false if only help was asked for, and printed
-/// @throws po::error for wrong use
+/// @return false if the only option is --help, whose text has been printed
+/// @throws po::error if the arguments are wrong
 bool parse(int argc, char** argv, Arguments* arguments) {
   po::options_description options(kAbout);
   auto add = options.add_options();
@@ -76,7 +77,8 @@ bool parse(int argc, char** argv, Arguments* arguments) {
       "YAML file with overrides of the block `plant`; repeatable, later wins");
   std::vector<std::string> words;
   const Positional unnamed{"word", po::value(&words), -1};
-  // No short options and no abbreviations: a word like -0.5 is then a value and never an option.
+  // Disables short options and abbreviations, so that a word like -0.5 is always a value and never
+  // an option.
   namespace style = po::command_line_style;
   constexpr int kStyle = style::allow_long | style::long_allow_adjacent | style::long_allow_next;
   if (!parseCommandLine(argc, argv, options, unnamed, kStyle)) return false;
@@ -84,7 +86,7 @@ bool parse(int argc, char** argv, Arguments* arguments) {
   throw po::error("unexpected \"" + words.front() + "\"; each value needs its option");
 }
 
-/// @throws po::error with the known plants if there is none of this name
+/// @throws po::error with the known plants if no plant has this name
 std::shared_ptr<const PlantPlugin> configuredPlant(const Arguments& arguments) {
   std::vector<std::string> files;
   try {
@@ -103,7 +105,7 @@ void writeFrame(const Plant& plant, const std::string& folder, std::size_t row) 
                imageMessage(plant.render(plant.state()), ros::Time()));
 }
 
-/// @param reward  empty: the plant has none
+/// @param reward  empty: the plant has no reward
 std::string csvRow(const Plant& plant, std::size_t row, const std::optional<double>& reward) {
   const auto number = [](double value) {
     char text[32];
@@ -150,9 +152,8 @@ YAML::Node numbers(const Eigen::VectorXd& values) {
   return valueToYaml(std::vector<double>(values.data(), values.data() + values.size()));
 }
 
-/// What a plant says of itself, as YAML. Numbers are in the units that the names in `state` and
-/// `torque` end with.
-/// @param renderer  empty: the images do not depend on a driver
+/// Description of a plant as YAML. The names in `state` and `torque` end with their units.
+/// @param renderer  driver that draws the images; empty: the images do not depend on a driver
 std::string describe(const PlantInfo& info, const std::string& renderer) {
   YAML::Node about;
   for (const Joint& joint : info.joints) {
@@ -212,7 +213,7 @@ int main(int argc, char** argv) {
   try {
     ddm::Arguments arguments;
     if (ddm::parse(argc, argv, &arguments)) ddm::simulate(arguments);
-  } catch (const boost::program_options::error& e) {  // not of the data
+  } catch (const boost::program_options::error& e) {  // an error in the arguments, not in the data
     std::cerr << "simulate: " << e.what() << "\nsimulate --help lists the options\n";
     return ddm::kUsageError;
   } catch (const std::exception& e) {

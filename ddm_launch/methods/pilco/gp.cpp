@@ -15,12 +15,14 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kLogTwoPi = 1.8378770664093453;
-/// Beyond this distance the covariance, 1e-100 of the signal's variance, is zero: products of such
-/// numbers would be denormal, and a processor takes a hundred times as long for those.
+/// Largest squared distance [length-scales^2] at which the covariance is computed. There it is 1e-100
+/// of the signal's variance; at larger distances it is set to zero. Products of such small numbers
+/// would be denormal, which processors compute a hundred times slower.
 constexpr double kFarthest = 460.0;
 
-/// @param samples  one per column, at least two
-/// @throws std::invalid_argument that names the first row that nothing can be learnt from
+/// Checks that all numbers are finite and that each row varies.
+/// @param samples  one sample per column, at least two columns
+/// @throws std::invalid_argument naming the first row that contains no information
 void requireVaried(const Eigen::MatrixXd& samples, const char* name) {
   for (Eigen::Index i = 0; i < samples.cols(); ++i) {
     for (Eigen::Index d = 0; d < samples.rows(); ++d) {
@@ -32,7 +34,7 @@ void requireVaried(const Eigen::MatrixXd& samples, const char* name) {
   for (Eigen::Index d = 0; d < samples.rows(); ++d) {
     require(std::isfinite(spread[d]), name, " ", d + 1,
             " is too large: its variance is beyond double precision");
-    // The extremes, as the spread of equal numbers may be a rounding error.
+    // The extremes are compared too, because the spread of equal numbers may be a rounding error.
     require(spread[d] > 0.0 && samples.row(d).minCoeff() < samples.row(d).maxCoeff(), name, " ",
             d + 1, " is ", samples(d, 0), " in all ", samples.cols(),
             " points: nothing can be learnt from it. Leave it out, or record data in which it "
@@ -40,7 +42,7 @@ void requireVaried(const Eigen::MatrixXd& samples, const char* name) {
   }
 }
 
-/// A = K + sn^2 I and its factor, for one output.
+/// A = K + sn^2 I and its Cholesky factor, for one output.
 struct Covariance {
   Covariance(const Eigen::MatrixXd& inputs, const Eigen::VectorXd& theta)
       : k(squaredExponential(inputs, inputs, theta.head(inputs.rows()).array().exp().matrix(),
@@ -63,7 +65,7 @@ struct Covariance {
     return out;
   }
 
-  Eigen::MatrixXd k;  ///< without noise                                               [n x n]
+  Eigen::MatrixXd k;  ///< K, without noise                                             [n x n]
   double noise_variance;
   Eigen::LLT<Eigen::MatrixXd> factor;
 };
@@ -104,7 +106,7 @@ void setTheta(const Eigen::VectorXd& theta, Eigen::Index output, Hyperparameters
 Eigen::MatrixXd squaredExponential(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b,
                                    const Eigen::VectorXd& length_scales, double signal_std) {
   eigen_assert(a.rows() == length_scales.size() && b.rows() == length_scales.size());
-  // One contiguous column for each coordinate, so that a column of k is one vectorised loop.
+  // The coordinates of `a` are contiguous columns, so that each column of k is one vectorised loop.
   const Eigen::MatrixXd scaled_a = (length_scales.cwiseInverse().asDiagonal() * a).transpose();
   const Eigen::MatrixXd scaled_b = length_scales.cwiseInverse().asDiagonal() * b;
   const double log_signal_variance = 2.0 * std::log(signal_std);

@@ -12,15 +12,15 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// Position of the pair a <= b in a list of all pairs.
+/// Index of the pair a <= b in a list of all pairs.
 std::size_t pairIndex(int a, int b) { return static_cast<std::size_t>(b * (b + 1) / 2 + a); }
 
-/// dJ/dS_ab and dJ/dS_ba together, for a <= b.
+/// dJ/dS_ab + dJ/dS_ba for a < b, and dJ/dS_aa for a = b.
 double pairAdjoint(int a, int b, const Moments& d_output) {
   return a == b ? d_output.covariance(a, a) : d_output.covariance(a, b) + d_output.covariance(b, a);
 }
 
-/// The matrix P_ij = w_ij c_j exp(f_i + g_j + u_i^T v_j) of n x n numbers, which is never stored.
+/// The n x n matrix P_ij = w_ij c_j exp(f_i + g_j + u_i^T v_j), which is never stored.
 struct ExponentialMatrix {
   Eigen::VectorXd f;               ///<                                      [n]
   Eigen::VectorXd g;               ///<                                      [n]
@@ -35,11 +35,11 @@ struct ExponentialSums {
   Eigen::MatrixXd moments;  ///< sum_i P_ij u_i in columns               [D x n]
 };
 
-/// Nearly all the time of PILCO is spent here. The exponent is clamped to [-500, 709]: e^-500 is
-/// nothing, and less could make products denormal, for which a processor takes a hundred times as
-/// long.
-/// @param w  one column: it is the same for all. n columns: above the diagonal it is taken for 0
-///                                                                 [n x 1 or n x n]
+/// PILCO spends nearly all of its computing time in this function. The exponent is clamped to
+/// [-500, 709]: e^-500 is negligible, and products of smaller numbers could be denormal, which
+/// processors compute a hundred times slower.
+/// @param w  weights: one column if the weights of all columns are equal, else n columns, of which
+///           only the lower triangle is used                       [n x 1 or n x n]
 ExponentialSums exponentialSums(const ExponentialMatrix& matrix,
                                 const Eigen::Ref<const Eigen::MatrixXd>& w) {
   const Eigen::Index rows = matrix.u.rows();
@@ -49,7 +49,7 @@ ExponentialSums exponentialSums(const ExponentialMatrix& matrix,
   sums.rows.setZero(rows);
   sums.columns.resize(cols);
   sums.moments.resize(matrix.u.cols(), cols);
-  Eigen::VectorXd column(rows);  // a column at a time stays in the fastest cache
+  Eigen::VectorXd column(rows);  // a single column stays in the fastest cache
   for (Eigen::Index j = 0; j < cols; ++j) {
     const Eigen::Index n = same_columns ? rows : rows - j;
     const auto u = matrix.u.bottomRows(n);
@@ -80,8 +80,8 @@ GpMoments::GpMoments(GpModel model) : model_(std::move(model)) {
   finite_ = model_.inputs.allFinite() && model_.beta.allFinite() && precisions_.allFinite() &&
             log_signal_variance_.allFinite() && (precisions_.array() > 0.0).all();
 
-  // The double sum for one output is symmetric in its points. Half of it is computed: twice the
-  // sum over the lower triangle with half the diagonal.
+  // The double sum for one output is symmetric in its points. It is computed as twice the sum over
+  // the lower triangle, with half the diagonal.
   weights_.resize(outputs);
   for (int a = 0; a < outputs; ++a) {
     Eigen::MatrixXd full = model_.beta.col(a) * model_.beta.col(a).transpose();
@@ -105,7 +105,7 @@ Moments GpMoments::predict(const Gaussian& input, Tape* tape) const {
     tape->d_sum_mean.assign(outputs * (outputs + 1) / 2, Eigen::VectorXd::Constant(dim, kNaN));
     tape->d_sum_covariance.assign(tape->d_sum_mean.size(), tape->inverse_widths.front());
   }
-  // The exponential of NaN is not NaN in every instruction set: so it must not get that far.
+  // NaN is rejected here, because some vectorised exponentials do not propagate NaN.
   if (!finite_ || !input.mean.allFinite() || !input.covariance.allFinite()) return output;
 
   const Eigen::MatrixXd z = (model_.inputs.colwise() - input.mean).transpose();
@@ -119,12 +119,13 @@ Moments GpMoments::predict(const Gaussian& input, Tape* tape) const {
   return output;
 }
 
-/// M and V. False if s + Lambda is not positive definite.
+/// Computes M and V. Returns false if s + Lambda is not positive definite.
 bool GpMoments::predictMeans(const Eigen::MatrixXd& z, const Eigen::MatrixXd& s, Moments* output,
                              Tape* tape) const {
   const int dim = model_.inputDim();
   for (int a = 0; a < model_.outputDim(); ++a) {
-    // (s + Lambda)^-1 = L (I + L s L)^-1 L with L = Lambda^-1/2: no eigenvalue below 1.
+    // (s + Lambda)^-1 = L (I + L s L)^-1 L with L = Lambda^-1/2. No eigenvalue of I + L s L is
+    // below 1.
     const Eigen::VectorXd root = precisions_.col(a).cwiseSqrt();
     const Eigen::LLT<Eigen::MatrixXd> scaled(Eigen::MatrixXd::Identity(dim, dim) +
                                              root.asDiagonal() * symmetricPart(s) *
@@ -166,16 +167,16 @@ GpMoments::Pair GpMoments::pairTerms(int a, int b, const Eigen::MatrixXd& s) con
   return pair;
 }
 
-/// S_ab. With u_i = Lambda_a^-1 z_i and v_j = Lambda_b^-1 z_j, so that w_ij = u_i + v_j:
+/// Computes S_ab. With u_i = Lambda_a^-1 z_i and v_j = Lambda_b^-1 z_j, so that w_ij = u_i + v_j:
 ///
-///   log Q_ij = f_i + g_j + u_i^T T v_j,   f_i = log sf_a^2 - log|R| / 2 - (z_i^T u_i - u_i^T T
-///   u_i) / 2
+///   log Q_ij = f_i + g_j + u_i^T T v_j
+///   f_i = log sf_a^2 - log|R| / 2 - (z_i^T u_i - u_i^T T u_i) / 2
 ///
 /// and for the sum over P_ij = (weight)_ij Q_ij:
 ///
 ///   d/dm = R^-T sum P_ij w_ij,  d/ds = (R^-T (sum P_ij w_ij w_ij^T) R^-1 - P R^-1 sum P_ij) / 2
 ///
-/// False if R has no positive eigenvalues.
+/// Returns false if R has eigenvalues that are not positive.
 bool GpMoments::predictPair(int a, int b, const Eigen::MatrixXd& z, const Eigen::MatrixXd& s,
                             Moments* output, Tape* tape) const {
   const Pair pair = pairTerms(a, b, s);
@@ -219,7 +220,7 @@ bool GpMoments::predictPair(int a, int b, const Eigen::MatrixXd& z, const Eigen:
   return true;
 }
 
-/// dJ/dM with what S = ... - M M^T adds to it.
+/// dJ/dM, including the derivative of the term -M M^T of S.
 Eigen::VectorXd GpMoments::meanAdjoint(const Tape& tape, const Moments& d_output) const {
   return d_output.mean - (d_output.covariance + d_output.covariance.transpose()) * tape.mean;
 }
@@ -262,7 +263,7 @@ Gaussian GpMoments::backward(const Tape& tape, const Moments& d_output) const {
 void GpMoments::backwardToModel(const Tape& tape, const Moments& d_output,
                                 GpGradient* d_model) const {
   const int outputs = model_.outputDim();
-  eigen_assert(model_.inverse.empty());  // no derivatives in a model with model uncertainty
+  eigen_assert(model_.inverse.empty());  // derivatives of the model uncertainty are not implemented
   meanToModel(tape, d_output, d_model);
   for (int b = 0; b < outputs; ++b) {
     for (int a = 0; a <= b; ++a) {
@@ -271,7 +272,7 @@ void GpMoments::backwardToModel(const Tape& tape, const Moments& d_output,
   }
 }
 
-/// M and V in the notation of backward(), with d Lambda_dd = 2 l_d^2 d log l_d:
+/// Derivatives of M and V in the notation of backward(), with d Lambda_dd = 2 l_d^2 d log l_d:
 ///
 ///   dJ/dX_i = p_i B nu - g_i B z_i,   dJ/dbeta_i = q_i (mu + nu^T B z_i)
 ///   dJ/dlog l_d = 2 l_d^2 [dJ/ds]_dd + sum g_i
@@ -282,7 +283,7 @@ void GpMoments::meanToModel(const Tape& tape, const Moments& d_output, GpGradien
     const Eigen::MatrixXd& B = tape.inverse_widths[a];
     const auto q = tape.kernel_means.col(a);
     const Eigen::VectorXd terms = q.cwiseProduct(model_.beta.col(a));
-    const Eigen::MatrixXd B_z = z * B;  // in rows
+    const Eigen::MatrixXd B_z = z * B;  // row i: (B z_i)^T
     const Eigen::VectorXd B_nu = B * d_output.gain.col(a);
     const Eigen::VectorXd gain = B_z.transpose() * terms;
     const Eigen::VectorXd d_terms = d_mean[a] + (z * B_nu).array();
@@ -298,12 +299,13 @@ void GpMoments::meanToModel(const Tape& tape, const Moments& d_output, GpGradien
   }
 }
 
-/// The double sum of S_ab, with u_i and v_j as in predictPair() and y_ij = T (u_i + v_j) - z_i:
+/// Derivatives of the double sum of S_ab, with u_i, v_j as in predictPair(), y_ij = T (u_i + v_j) -
+/// z_i:
 ///
 ///   dJ/dX_i = dJ/dS_ab Lambda_a^-1 sum_j P_ij y_ij,   dJ/dbeta_a = dJ/dS_ab Q beta_b
 ///   dJ/dlog l_ad = dJ/dS_ab l_ad^-2 sum_ij P_ij (T_dd + y_ijd^2)
 ///
-/// and the same for b with the roles of i and j exchanged; for a = b both parts add up.
+/// and the same for b with i and j exchanged; for a = b the two parts are added.
 void GpMoments::pairToModel(int a, int b, double d_sum, const Tape& tape,
                             GpGradient* d_model) const {
   const Pair pair = pairTerms(a, b, tape.input.covariance);
@@ -315,7 +317,7 @@ void GpMoments::pairToModel(int a, int b, double d_sum, const Tape& tape,
   const Eigen::MatrixXd z = (model_.inputs.colwise() - tape.input.mean).transpose();
   const Eigen::MatrixXd u = z * precisions_.col(a).asDiagonal();
   const Eigen::MatrixXd v = z * precisions_.col(b).asDiagonal();
-  const Eigen::MatrixXd T_u = u * T;  // in rows
+  const Eigen::MatrixXd T_u = u * T;  // row i: (T u_i)^T
   const Eigen::MatrixXd T_v = v * T;
   const Eigen::MatrixXd y_a = T_u - z;
   const Eigen::MatrixXd y_b = T_v - z;

@@ -10,7 +10,7 @@
 
 namespace ddm::pilco {
 
-/// Derivatives of a scalar J in what a GP without model uncertainty consists of.
+/// Derivatives of a scalar J with respect to the parameters of a GP without model uncertainty.
 struct GpGradient {
   Eigen::MatrixXd inputs;             ///< [D x n]
   Eigen::MatrixXd beta;               ///< [n x E]
@@ -27,21 +27,21 @@ struct GpGradient {
 ///           R = s (Lambda_a^-1 + Lambda_b^-1) + I,  w_ij = Lambda_a^-1 z_i + Lambda_b^-1 z_j
 ///   S_ab  = beta_a^T Q beta_b - M_a M_b,  and for a = b:  + sf_a^2 - trace(A_a^-1 Q)
 ///
-/// The last two terms are the model uncertainty; they are left out for a model without `inverse`.
-/// S does not contain the observation noise. s may be singular or zero.
+/// The last two terms are the model uncertainty. A model without `inverse` has no such terms. S
+/// does not contain the observation noise. s may be singular or zero.
 ///
-/// Numbers that are not finite, in the model or in the input, and an s that is far from positive
-/// semi-definite make all results NaN.
+/// All results are NaN if the model or the input contains numbers that are not finite, or if s is
+/// far from positive semi-definite.
 class GpMoments {
  public:
-  /// What backward() needs from predict(). Its size does not depend on n^2: the derivatives of the
-  /// double sums are formed while Q passes by.
+  /// What backward() needs from predict(). The tape holds no [n x n] matrices, because predict()
+  /// forms the derivatives of the double sums while it computes Q.
   struct Tape {
     Gaussian input;
     Eigen::MatrixXd kernel_means;                   ///< q_ai                   [n x E]
     std::vector<Eigen::MatrixXd> inverse_widths;    ///< (s + Lambda_a)^-1  E times [D x D]
-    std::vector<Eigen::VectorXd> d_sum_mean;        ///< by pairs a <= b            [D]
-    std::vector<Eigen::MatrixXd> d_sum_covariance;  ///< by pairs a <= b        [D x D]
+    std::vector<Eigen::VectorXd> d_sum_mean;        ///< for each pair a <= b       [D]
+    std::vector<Eigen::MatrixXd> d_sum_covariance;  ///< for each pair a <= b   [D x D]
     Eigen::VectorXd mean;                           ///< M                          [E]
   };
 
@@ -56,17 +56,18 @@ class GpMoments {
 
   /// Vector-Jacobian product of predict().
   /// @param d_output  dJ/dM, dJ/dS, dJ/dV
-  /// @return          dJ/dm, dJ/ds. The latter is symmetric: a change of s(p,q) and s(q,p) by h
-  ///                  changes J by h (entry pq + entry qp)
+  /// @return          dJ/dm, dJ/ds; dJ/ds is symmetric: if s(p,q) and s(q,p) change by h, J changes
+  ///                  by h (entry pq + entry qp)
   Gaussian backward(const Tape& tape, const Moments& d_output) const;
 
-  /// Vector-Jacobian product in the model itself. Meant for policies: the matrix Q is formed.
+  /// Vector-Jacobian product with respect to the model. It forms the matrix Q [n x n] and is meant
+  /// for policies, which have few points.
   /// @param d_model  dJ/d inputs, beta, log length-scales are ADDED to it
   /// @pre the model has no model uncertainty
   void backwardToModel(const Tape& tape, const Moments& d_output, GpGradient* d_model) const;
 
  private:
-  /// Terms of a pair of outputs that do not depend on the points.
+  /// Terms of a pair of outputs that are the same for all points.
   struct Pair {
     Eigen::VectorXd precision_sum;  // P = Lambda_a^-1 + Lambda_b^-1, a diagonal [D]
     Eigen::MatrixXd inverse_R;      // R^-1 = (I + s P)^-1                   [D x D]

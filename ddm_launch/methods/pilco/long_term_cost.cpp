@@ -10,7 +10,7 @@
 namespace ddm::pilco {
 namespace {
 
-/// N([f, u]) from the moments of f and those of u given f.
+/// N([f, u]) from the moments of f and the moments of u = policy(f).
 Gaussian joint(const Moments& features, const Moments& control) {
   const Eigen::Index num_features = features.mean.size();
   const Eigen::Index num_controls = control.mean.size();
@@ -37,7 +37,7 @@ Propagation::Propagation(GpModel dynamics, const PropagationOptions& options)
   measurement_variance_ = 0.5 * (2.0 * log_noise_std.array()).exp();
 }
 
-/// The state as the policy sees it.
+/// Distribution of the measured state, on which the policy acts.
 Gaussian Propagation::policyState(const Gaussian& state) const {
   Gaussian measured = state;
   measured.covariance.diagonal() += measurement_variance_;
@@ -125,7 +125,7 @@ LongTermCost::LongTermCost(Propagation dynamics, StateCost cost, SquashedPolicy*
   eigen_assert(horizon >= 1 && cost_.inputDim() == dynamics_.stateDim());
 }
 
-/// False where the prediction leaves the finite numbers.
+/// Predicts all steps. Returns false if a prediction is not finite.
 bool LongTermCost::predict(bool record) {
   states_.resize(1);
   costs_.clear();
@@ -169,7 +169,8 @@ double LongTermCost::evaluate(const Eigen::VectorXd& parameters, Eigen::VectorXd
 std::vector<double> LongTermCost::costStandardDeviations() const {
   std::vector<double> out;
   for (std::size_t t = 1; t < states_.size(); ++t) {
-    out.push_back(std::sqrt(std::max(0.0, cost_.variance(states_[t]))));  // rounded below 0
+    // Rounding may make the variance slightly negative.
+    out.push_back(std::sqrt(std::max(0.0, cost_.variance(states_[t]))));
   }
   return out;
 }

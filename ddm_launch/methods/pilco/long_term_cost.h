@@ -11,26 +11,26 @@
 
 namespace ddm::pilco {
 
-/// How the dynamics GP and the policy use the state.
+/// Properties of the state that the dynamics GP and the policy take into account.
 struct PropagationOptions {
   std::vector<int> angles;  ///< entries of the state that are angles [rad]
-  /// The policy sees a measurement of the state: half the noise variance of each output of the GP
-  /// is added to the state's variance at the input of the policy. Half, because the GP learned it
-  /// from differences of two measurements.
+  /// Whether the policy sees a noisy measurement of the state. If so, half the noise variance of
+  /// each output of the GP is added to the variance of the state at the input of the policy. It is
+  /// half, because the GP learned the noise from differences of two measurements.
   bool noisy_policy_input = false;
 };
 
 /// p(x_t) = N(m, s)  ->  p(x_{t+1}) (Deisenroth, Fox and Rasmussen, 2015, Sec. 3.2):
 ///
-///   f = features of x (entries that are no angles, then sine and cosine of each angle)
+///   f = features of x (all entries that are not angles, then sine and cosine of each angle)
 ///   u = policy(f), or policy(features of x + measurement noise)
 ///   delta = GP([f, u]);   m' = m + M,   s' = s + cov(x, delta) + cov(delta, x) + S
 ///
-/// with cov(x, delta) = s G_f (V_f + G_u V_u): G are gains, V_f and V_u the rows of the GP's gain.
-/// No process noise is added.
+/// with cov(x, delta) = s G_f (V_f + G_u V_u). G_f and G_u are the gains of features and policy;
+/// V_f and V_u are the rows of the GP's gain that belong to f and u. No process noise is added.
 class Propagation {
  public:
-  /// What backward() needs from step().
+  /// Intermediate results of step() that backward() needs.
   struct Tape {
     Gaussian state;
     Moments features;
@@ -40,7 +40,7 @@ class Propagation {
     GpMoments::Tape dynamics;
   };
 
-  /// @param dynamics  GP with inputs [f, u]; output a is the difference of state entry a
+  /// @param dynamics  GP with inputs [f, u]; output a is the change of state entry a
   Propagation(GpModel dynamics, const PropagationOptions& options);
 
   int stateDim() const { return state_dim_; }
@@ -54,7 +54,7 @@ class Propagation {
 
   /// Vector-Jacobian product of step(), exact.
   /// @param d_next        dJ/dm', dJ/ds'
-  /// @param d_parameters  (optional) dJ/d parameters of the policy is ADDED to it
+  /// @param d_parameters  (optional) dJ/d(parameters of the policy) is ADDED to it
   /// @return              dJ/dm, dJ/ds (symmetric)
   Gaussian backward(const SquashedPolicy& policy, const Tape& tape, const Gaussian& d_next,
                     Eigen::VectorXd* d_parameters) const;
@@ -66,33 +66,33 @@ class Propagation {
   Augmentation features_;
   GpMoments dynamics_;
   PropagationOptions options_;
-  Eigen::VectorXd measurement_variance_;  // of what the policy sees, where it is noisy [D]
+  Eigen::VectorXd measurement_variance_;  // variance added at the input of the policy [D]
 };
 
-/// J(theta) = sum_{t=1..H} E[c(x_t)] (Deisenroth and Rasmussen, 2011). x_0 is given and not
-/// counted. The gradient goes backwards through the steps.
+/// J(theta) = sum_{t=1..H} E[c(x_t)] (Deisenroth and Rasmussen, 2011). The cost of the given x_0 is
+/// not included. The gradient is computed backwards through the steps.
 class LongTermCost {
  public:
-  /// @param dynamics       one step
+  /// @param dynamics       prediction of one step
   /// @param cost           c
-  /// @param policy         evaluate() sets its parameters; outlives this
+  /// @param policy         must outlive this object; evaluate() sets its parameters
   /// @param initial_state  p(x_0), finite
-  /// @param horizon        H >= 1, steps
+  /// @param horizon        H >= 1, number of steps
   LongTermCost(Propagation dynamics, StateCost cost, SquashedPolicy* policy, Gaussian initial_state,
                int horizon);
 
-  /// @param parameters  theta, of the policy
+  /// @param parameters  theta, the parameters of the policy
   /// @param gradient    (optional) out: dJ/d theta
-  /// @return J. NaN, with a gradient of NaN, where the prediction leaves the finite numbers
+  /// @return            J; NaN, with a gradient of NaN, if a prediction is not finite
   double evaluate(const Eigen::VectorXd& parameters, Eigen::VectorXd* gradient = nullptr);
 
-  /// p(x_0) ... p(x_H) of the last evaluate(): H + 1 of them, or fewer where it ended in NaN.
+  /// p(x_0) ... p(x_H) of the latest evaluate(); fewer than H + 1 if its result was NaN.
   const std::vector<Gaussian>& states() const { return states_; }
 
-  /// E[c(x_1)] ... E[c(x_H)] of the last evaluate(), as many as there are predicted states.
+  /// E[c(x_1)] ... E[c(x_H)] of the latest evaluate(), one for each predicted state.
   const std::vector<double>& costs() const { return costs_; }
 
-  /// Standard deviation of c(x_1) ... c(x_H) of the last evaluate().
+  /// Standard deviations of c(x_1) ... c(x_H) of the latest evaluate().
   std::vector<double> costStandardDeviations() const;
 
  private:

@@ -1,4 +1,4 @@
-// The input and output of every block of PILCO: a Gaussian, and mean, covariance and gain of an output.
+// Gaussians and moments, the input and output of all blocks of PILCO.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -15,19 +15,20 @@ struct Gaussian {
   Eigen::MatrixXd covariance;  ///< [D x D]
 };
 
-/// Moments of y = f(x) for x ~ N(m, s). The same struct holds derivatives of a scalar J in them.
+/// Moments of y = f(x) for x ~ N(m, s). The same struct holds the derivatives of a scalar J with
+/// respect to these moments.
 ///
-/// The gain is s^-1 cov(x, y), that is E[df/dx]^T (Stein's lemma): cov(x, y) = s gain. It stays
-/// finite where s is singular or zero, and nothing here ever inverts s.
+/// The gain is s^-1 cov(x, y), i.e. E[df/dx]^T by Stein's lemma, so that cov(x, y) = s gain. The
+/// gain stays finite if s is singular or zero, because no function inverts s.
 ///
-/// Sizes of arguments are checked by eigen_assert, i.e. in debug builds only.
+/// eigen_assert checks the sizes of all arguments, i.e. in debug builds only.
 struct Moments {
   Eigen::VectorXd mean;        ///< M                          [E]
   Eigen::MatrixXd covariance;  ///< S                      [E x E]
   Eigen::MatrixXd gain;        ///< V = s^-1 cov(x, y)     [D x E]
 };
 
-/// All entries equal to `value`.
+/// Moments or Gaussian with all entries equal to `value`.
 inline Moments constantMoments(int input_dim, int output_dim, double value = 0.0) {
   return {Eigen::VectorXd::Constant(output_dim, value),
           Eigen::MatrixXd::Constant(output_dim, output_dim, value),
@@ -40,7 +41,7 @@ inline Gaussian constantGaussian(int dim, double value = 0.0) {
 /// Mean and covariance of y alone.
 inline Gaussian marginal(const Moments& moments) { return {moments.mean, moments.covariance}; }
 
-/// A known x: its covariance is 0.
+/// The distribution of a known x: its covariance is 0.
 inline Gaussian known(const Eigen::VectorXd& x) {
   return {x, Eigen::MatrixXd::Zero(x.size(), x.size())};
 }
@@ -48,7 +49,7 @@ inline Gaussian known(const Eigen::VectorXd& x) {
 /// (A + A^T) / 2
 inline Eigen::MatrixXd symmetricPart(const Eigen::MatrixXd& A) { return 0.5 * (A + A.transpose()); }
 
-/// All parts in one text, as a stream prints them.
+/// Concatenates all parts as an output stream prints them.
 template <class... Parts>
 std::string message(const Parts&... parts) {
   std::ostringstream text;
@@ -56,8 +57,8 @@ std::string message(const Parts&... parts) {
   return text.str();
 }
 
-/// @param ok  to be written so that NaN makes it false
-/// @throws std::invalid_argument with all parts as its text, unless `ok`
+/// @param ok  condition, written such that NaN makes it false
+/// @throws std::invalid_argument with the concatenated parts as message if `ok` is false
 template <class... Parts>
 void require(bool ok, const Parts&... parts) {
   if (!ok) throw std::invalid_argument(message(parts...));

@@ -1,4 +1,4 @@
-// What PILCO takes for the state: the true state, features of images, or principal components of images.
+// Observations, the states of PILCO: true state, features of images, or principal components.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pilco/observations.h"
 
@@ -21,19 +21,20 @@ namespace ddm {
 namespace {
 
 constexpr char kModelFile[] = "model.ddm";
-constexpr int kRate = 0;  // places in x
-constexpr int kAngle = 1;
+constexpr int kRate = 0;                 // index of the rate in x
+constexpr int kAngle = 1;                // index of the angle in x
 constexpr double kUprightWithin = 1e-9;  // [rad]
-// As in the published runs.
-constexpr double kCostWidth = 0.5;    // of the saturating cost around the goal [spread]
-constexpr double kRateNoise = 0.1;    // true state: standard deviation of its measurement [rad/s]
-constexpr double kAngleNoise = 0.01;  // the same [rad]
+// Values of the published experiments.
+constexpr double kCostWidth = 0.5;    // width of the saturating cost around the goal [spread]
+constexpr double kRateNoise = 0.1;    // true state: standard deviation of measured rates [rad/s]
+constexpr double kAngleNoise = 0.01;  // true state: standard deviation of measured angles [rad]
 constexpr double kStartStd = 0.1;     // images: standard deviation of the initial state [spread]
 
-/// (angle, rate) of the plant to x.
+/// Converts the state (angle, rate) of the plant to x = (rate, angle).
 Eigen::VectorXd reorder(const Eigen::VectorXd& state) { return state.reverse(); }
 
-/// The cost is made for one joint that turns, seen as angle and rate, whose goal is upright.
+/// Whether the plant is one rotary joint with state (angle, rate) and upright goal, as the cost
+/// needs.
 bool isPendulum(const Plant& plant) {
   const PlantInfo& info = plant.info();
   return info.joints.size() == 1 && info.joints[0].kind == JointKind::kAngle &&
@@ -89,9 +90,9 @@ class TrueStateObservation : public Observation {
   PilcoTask task() const {
     const Eigen::VectorXd variance = reorder(plant_.info().start_std).cwiseAbs2();
     const pilco::Gaussian start{reorder(plant_.info().start), variance.asDiagonal()};
-    Eigen::VectorXd length_scales(3);  // of rate, sine, cosine, as in the published runs
+    Eigen::VectorXd length_scales(3);  // of rate, sine and cosine, as in the published experiments
     length_scales << 1.0, 0.7, 0.7;
-    // Distance and width are in lengths of the rod, so the length need not be known.
+    // Distance and width are in units of the rod's length, so that the length itself is not needed.
     return {{kAngle}, true, start, pilco::pendulumCost(/*length=*/1.0, kCostWidth), length_scales};
   }
 

@@ -1,4 +1,4 @@
-// Parameters of PILCO. One struct = one YAML block; config/pilco.yaml explains them.
+// Parameters of PILCO. One struct is one YAML block; pilco.yaml explains the parameters.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -9,17 +9,17 @@
 
 namespace ddm::pilco {
 
-/// Block `pilco`: how far predictions go, and how large the policy is.
+/// Block `pilco`: horizon of the predictions and size of the policy.
 struct PilcoOptions {
   int horizon = 125;     ///< H, predicted steps [-]
-  int num_centres = 30;  ///< of the RBF policy [-]
+  int num_centres = 30;  ///< centres of the RBF policy [-]
 
   template <class Visitor>
   void visit(Visitor& visitor) {
     visitor("horizon", horizon);
     visitor("num_centres", num_centres);
   }
-  /// Everything wrong with these values, in words a user can act on. Empty means valid.
+  /// All problems with these values, in words a user can act on. Empty if the values are valid.
   std::vector<std::string> problems() const {
     OptionChecks pilco("pilco");
     pilco.requireWithin("horizon", horizon, 1, 100000);
@@ -28,10 +28,10 @@ struct PilcoOptions {
   }
 };
 
-/// Block `gp`: training of one GP for each output.
+/// Block `gp`: training of the GPs, one GP for each output.
 struct GpTrainingOptions {
-  int max_iterations = 300;  ///< of BFGS, for each output [-]
-  int training_points = 0;   ///< drawn at random to learn from; 0: all [-]
+  int max_iterations = 300;  ///< limit on the BFGS iterations for each output [-]
+  int training_points = 0;   ///< size of a random subset for the hyper-parameters; 0: all data [-]
 
   template <class Visitor>
   void visit(Visitor& visitor) {
@@ -47,11 +47,11 @@ struct GpTrainingOptions {
   }
 };
 
-/// Block `sparse_gp`.
+/// Block `sparse_gp`: the sparse GP that replaces the full GP for large data.
 struct SparseGpOptions {
-  int max_points = 300;         ///< more data than this: as many inducing inputs [-]
-  int first_iterations = 1500;  ///< of L-BFGS on the inducing inputs, from a random subset [-]
-  int max_iterations = 500;     ///< the same, from the inducing inputs of the trial before [-]
+  int max_points = 300;         ///< largest full GP, and number of inducing inputs [-]
+  int first_iterations = 1500;  ///< limit on the first L-BFGS training of the inducing inputs [-]
+  int max_iterations = 500;     ///< limit on the L-BFGS training of the inducing inputs later [-]
 
   template <class Visitor>
   void visit(Visitor& visitor) {
@@ -68,10 +68,10 @@ struct SparseGpOptions {
   }
 };
 
-/// Block `policy_search`.
+/// Block `policy_search`: optimisation of the policy.
 struct PolicySearchOptions {
-  int max_iterations = 75;     ///< line searches of BFGS for each trial [-]
-  int max_evaluations = 1500;  ///< of the cost with its gradient, for each trial [-]
+  int max_iterations = 75;     ///< limit on the line searches of BFGS in each trial [-]
+  int max_evaluations = 1500;  ///< limit on the evaluations of cost and gradient in each trial [-]
 
   template <class Visitor>
   void visit(Visitor& visitor) {
@@ -93,7 +93,7 @@ struct PilcoConfig {
   SparseGpOptions sparse_gp;
   PolicySearchOptions policy_search;
 
-  /// Calls `visitor` with name and values of each block.
+  /// Calls `visitor` with the name and the values of each block.
   template <class Visitor>
   void visitBlocks(const Visitor& visitor) {
     visitor("pilco", pilco);

@@ -1,4 +1,4 @@
-// Where the next training of PILCO starts, as keys of pilco.yaml.
+// Reads and writes what the next training of PILCO starts from, as keys of pilco.yaml.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_common/param_value.h>
 #include <ddm_common/plain_file.h>
@@ -11,8 +11,8 @@
 namespace ddm {
 namespace {
 
-/// A matrix as a list of its columns.
-/// @throws std::runtime_error if it is not finite, since matrixOf() would refuse it
+/// Writes a matrix as a list of its columns.
+/// @throws std::runtime_error if the matrix is not finite, because matrixOf() would refuse it
 YAML::Node matrixToYaml(const Eigen::MatrixXd& matrix) {
   if (!matrix.allFinite()) {
     throw std::runtime_error(
@@ -41,7 +41,8 @@ Eigen::MatrixXd matrixOf(const YAML::Node& memory, const std::string& key) {
   return out;
 }
 
-/// The single column that a vector is kept as.
+/// Reads a vector, which is stored as a matrix with one column.
+/// @throws std::runtime_error if there are more columns
 Eigen::VectorXd vectorOf(const YAML::Node& memory, const std::string& key) {
   const Eigen::MatrixXd matrix = matrixOf(memory, key);
   if (matrix.cols() != 1) throw std::runtime_error(key + " must be one column");

@@ -1,4 +1,4 @@
-// PILCO as a method: Gaussian processes and policy search on an observation.
+// PILCO as a method: Gaussian processes of the dynamics and policy search, on an observation.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pilco/pilco_method.h"
 
@@ -26,14 +26,14 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr char kMemoryFile[] = "pilco.yaml";
-constexpr double kDynamicsShare = 0.2;  // of the progress shown
+constexpr double kDynamicsShare = 0.2;  // share of the GP training in the progress bar
 
 double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// What the GPs learn from: inputs [features of x_t, u_t] in columns, targets x_{t+1} - x_t in rows.
-/// No transition straddles two segments.
+/// Training data of the GPs: inputs [features of x_t, u_t] in columns, targets x_{t+1} - x_t in
+/// rows. Both states of a transition are in the same segment.
 std::pair<Eigen::MatrixXd, Eigen::MatrixXd> transitions(const DataSet& data,
                                                         const Eigen::MatrixXd& X,
                                                         const pilco::Augmentation& features) {
@@ -49,7 +49,7 @@ std::pair<Eigen::MatrixXd, Eigen::MatrixXd> transitions(const DataSet& data,
   return {inputs, targets};
 }
 
-/// The policy that PILCO searches, on an observation: u = policy(features of x).
+/// The policy of PILCO on an observation: u = policy(features of x).
 class PilcoPolicy : public Policy {
  public:
   PilcoPolicy(std::shared_ptr<Observation> observation,
@@ -60,7 +60,7 @@ class PilcoPolicy : public Policy {
 
   void startTrial(const TrialId& id) override { observation_->startTrial(id); }
   void observe(const Grey& grey) override { x_ = observation_->observe(grey); }
-  /// 0 where the policy's torque is not finite.
+  /// The torque is 0 if the policy's result is not finite.
   Answer answer() override {
     const Clock::time_point start = Clock::now();
     Answer answer;
@@ -113,7 +113,7 @@ MethodKind pilcoKind(const std::string& name, const std::string& about,
 
 }  // namespace
 
-/// What a training needs and how it goes.
+/// Inputs and statistics of one training.
 struct PilcoMethod::Training {
   PilcoMemory memory;
   std::mt19937_64 rng;
@@ -149,7 +149,7 @@ TrainingOutcome PilcoMethod::train(const std::vector<std::string>& bags, const T
   return outcome;
 }
 
-/// The previous training left it next to the bags of the last trial but one.
+/// Reads the memory of the previous training, which is in the folder of the last trial but one.
 PilcoMemory PilcoMethod::lastMemory(const std::vector<std::string>& bags) const {
   const size_t last_two_trials = 2 * static_cast<size_t>(configuration_.trial.episodes);
   if (bags.size() < last_two_trials || !observation_->keepsCoordinates()) return {};
@@ -203,10 +203,11 @@ pilco::Propagation PilcoMethod::learnDynamics(const DataSet& data, const Observe
   return pilco::Propagation(fit.model, {observed.task.angles, observed.task.noisy});
 }
 
-/// Sets policy_. Where the last policy's prediction leaves the finite numbers under the new GPs,
-/// the search starts afresh, and where that is no better the run goes on with what there is: an
-/// error would come again each time that it is resumed.
-/// @return the cost, evaluated at the policy
+/// Searches the policy and sets policy_. If the cost of the last policy is not finite under the new
+/// GPs, the search starts from a newly drawn policy. If the cost of that policy is not finite
+/// either, that policy is kept without a search: an error would end the experiment, and resuming
+/// the experiment would only repeat the error.
+/// @return the long-term cost, evaluated at the policy
 pilco::LongTermCost PilcoMethod::improvePolicy(pilco::Propagation dynamics, const PilcoTask& task,
                                                Training* training) {
   const Clock::time_point start = Clock::now();
@@ -225,10 +226,11 @@ pilco::LongTermCost PilcoMethod::improvePolicy(pilco::Propagation dynamics, cons
   solver.max_evaluations = pilco_.policy_search.max_evaluations;
   solver.function_tolerance = 1e-8;
   const auto search = [&] {
-    // Where the cost is not finite, because a predicted distribution grows without bound, the line search takes a shorter step.
+    // The cost is not finite if a predicted distribution grows without bound. The line search then
+    // takes a shorter step.
     return minimise(
         [&](const Eigen::VectorXd& p, Eigen::VectorXd* gradient) {
-          // The line search takes about two evaluations an iteration.
+          // A line search takes about two evaluations.
           const double done = ++evaluations / (2.0 * pilco_.policy_search.max_iterations + 1.0);
           training->progress(kDynamicsShare + (1.0 - kDynamicsShare) * std::min(done, 1.0));
           return cost.evaluate(p, gradient);
@@ -242,11 +244,11 @@ pilco::LongTermCost PilcoMethod::improvePolicy(pilco::Propagation dynamics, cons
     result = search();
   }
   const bool failed = result.reason == MinimumReason::kStartFailed;
-  if (failed) {  // more data may mend it
+  if (failed) {  // the next trial adds data, which may help
     result.message = "a first policy is kept, since its cost is not finite either";
   }
   parameters = result.x;
-  cost.evaluate(parameters);  // sets the policy, and the prediction that is kept
+  cost.evaluate(parameters);  // sets the parameters of the policy and the stored prediction
 
   YAML::Node& report = training->report;
   report["policy_search_s"] = valueToYaml(secondsSince(start));
@@ -289,7 +291,7 @@ std::shared_ptr<Policy> PilcoMethod::policy() const {
 
 Eigen::VectorXd drawFirstPolicy(const PilcoTask& task, const pilco::Augmentation& features,
                                 int num_centres, int torque_dim, std::mt19937_64* rng) {
-  constexpr double kTargetStd = 0.1;  // of the published runs
+  constexpr double kTargetStd = 0.1;  // value of the published experiments
   const auto drawNormal = [rng](Eigen::Index rows, Eigen::Index cols) {
     std::normal_distribution<double> normal;
     Eigen::MatrixXd out(rows, cols);
@@ -297,7 +299,8 @@ Eigen::VectorXd drawFirstPolicy(const PilcoTask& task, const pilco::Augmentation
     return out;
   };
   const pilco::Moments start = features.predict(task.start);
-  // A root of the covariance, which may be singular.
+  // A square root of the covariance. A Cholesky factor may not exist, as the covariance may be
+  // singular.
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(start.covariance);
   const Eigen::MatrixXd root =
       solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();

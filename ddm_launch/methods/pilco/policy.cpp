@@ -1,4 +1,4 @@
-// PILCO's policy: an RBF network with free pseudo-data, its output squashed by two sines.
+// PILCO's policy: an RBF network whose output is squashed by two sines.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pilco/policy.h"
 
@@ -96,8 +96,8 @@ Gaussian RbfPolicy::backward(const Gaussian& input, const Moments& d_output,
   return network_->backward(tape, d_output);
 }
 
-/// beta = A^-1 t with A = K + 1e-4 I: dJ/dt = A^-1 dJ/dbeta and dJ/dA = -(dJ/dt) beta^T. With
-/// H_ij = [dJ/dA]_ij K_ij, and differences of centres c_i - c_j:
+/// Adds the derivatives through beta = A^-1 t with A = K + 1e-4 I: dJ/dt = A^-1 dJ/dbeta and
+/// dJ/dA = -(dJ/dt) beta^T. With H_ij = [dJ/dA]_ij K_ij:
 ///
 ///   dJ/dlog l_d = sum_ij H_ij (c_id - c_jd)^2 / l_d^2
 ///   dJ/dc_i     = -sum_j (H_ij + H_ji) Lambda^-1 (c_i - c_j)
@@ -112,7 +112,7 @@ void RbfPolicy::addThroughBeta(GpGradient* d_network, Eigen::MatrixXd* d_targets
     const Eigen::VectorXd sums = both.rowwise().sum();
     const Eigen::VectorXd precisions =
         (-2.0 * network.hyperparameters.log_length_scales.col(a).array()).exp();
-    // Summed over all pairs: (c_i - c_j)^2 and c_i - c_j, centres in columns.
+    // Sums of (c_i - c_j)^2 and of c_i - c_j over all pairs. The centres are columns.
     const Eigen::MatrixXd differences = network.inputs * sums.asDiagonal() - network.inputs * both;
     d_network->inputs -= precisions.asDiagonal() * differences;
     d_network->log_length_scales.col(a) +=
@@ -219,7 +219,7 @@ Eigen::VectorXd SquashedPolicy::control(const Eigen::VectorXd& features) const {
   const Eigen::VectorXd& bound = squashing_.maxControl();
   return predict(known(features))
       .mean.cwiseMin(bound)
-      .cwiseMax(-bound);  // rounding at the flat tops
+      .cwiseMax(-bound);  // removes rounding errors at the flat tops
 }
 
 }  // namespace ddm::pilco

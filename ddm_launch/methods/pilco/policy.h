@@ -1,4 +1,4 @@
-// PILCO's policy: an RBF network with free pseudo-data, its output squashed by two sines.
+// PILCO's policy: an RBF network whose output is squashed by two sines.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -11,43 +11,43 @@
 
 namespace ddm::pilco {
 
-/// pi(x) = sum_i beta_i k(c_i, x),  beta = (K + 0.01^2 I)^-1 targets, with the squared-exponential
-/// k of signal standard deviation 1 (Deisenroth, 2010: an RBF network as the mean of a GP).
+/// pi(x) = sum_i beta_i k(c_i, x),  beta = (K + 0.01^2 I)^-1 targets
 ///
-/// The moments are those of a GP without model uncertainty; 1e-6 is added to the diagonal of S.
-/// Parameters: log length-scales [D x U], centres [nc x D], targets [nc x U], each by columns. The
-/// signal and noise standard deviations are fixed and not among them.
+/// k is the squared-exponential covariance with signal standard deviation 1 (Deisenroth, 2010: an
+/// RBF network as the mean of a GP). The moments are those of a GP without model uncertainty; 1e-6
+/// is added to the diagonal of S. Parameters: log length-scales [D x U], centres [nc x D], targets
+/// [nc x U], each by columns. The standard deviations of signal and noise are fixed.
 class RbfPolicy {
  public:
   static constexpr double kNoiseVariance = 1e-4;
   static constexpr double kJitter = 1e-6;
 
-  /// All parameters are 0 until setParameters().
+  /// All parameters are 0 until setParameters() is called.
   RbfPolicy(int input_dim, int output_dim, int num_centres);
 
   int inputDim() const { return input_dim_; }
   int outputDim() const { return output_dim_; }
 
-  /// A copy: a search that starts from them must not see its start change.
+  /// Returns a copy, so that setParameters() does not change the initial parameters of a search.
   Eigen::VectorXd parameters() const { return parameters_; }
 
-  /// Parameters that are not finite, or with which K loses positive definiteness, are accepted; all
-  /// predictions are NaN then.
+  /// Accepts parameters that are not finite or make K lose positive definiteness; all predictions
+  /// are then NaN.
   void setParameters(const Eigen::VectorXd& parameters);
 
   Moments predict(const Gaussian& input) const;
 
   /// Vector-Jacobian product of predict() at the same input.
   /// @param d_output      dJ/dM, dJ/dS, dJ/dV
-  /// @param d_parameters  (optional) dJ/d parameters is ADDED to it
+  /// @param d_parameters  (optional) dJ/d(parameters) is ADDED to it
   /// @return              dJ/dm, dJ/ds (symmetric)
   Gaussian backward(const Gaussian& input, const Moments& d_output,
                     Eigen::VectorXd* d_parameters) const;
 
-  /// The flat vector from its parts.
-  /// @param log_length_scales                                         [D x U]
-  /// @param centres            one per column                         [D x nc]
-  /// @param targets                                                   [nc x U]
+  /// Concatenates the parts of the parameter vector.
+  /// @param log_length_scales  one column per output                  [D x U]
+  /// @param centres            one centre per column                  [D x nc]
+  /// @param targets            one column per output                  [nc x U]
   static Eigen::VectorXd packParameters(const Eigen::MatrixXd& log_length_scales,
                                         const Eigen::MatrixXd& centres,
                                         const Eigen::MatrixXd& targets);
@@ -64,16 +64,16 @@ class RbfPolicy {
   std::unique_ptr<GpMoments> network_;
 };
 
-/// u = u_max (9 sin x + sin 3x) / 8 entry by entry: a wave with flat tops in [-u_max, u_max] and
-/// slope 3/2 u_max at 0 (Deisenroth, Fox and Rasmussen, 2015, Sec. 5; the squashing of Deisenroth,
-/// 2010, is a single sine). For x ~ N(m, s), w_1 = 9/8, w_3 = 1/8:
+/// u = u_max (9 sin x + sin 3x) / 8 for each entry: a wave with flat tops in [-u_max, u_max] and
+/// slope 3/2 u_max at 0 (Deisenroth, Fox and Rasmussen, 2015, Sec. 5). Deisenroth (2010) uses a
+/// single sine. For x ~ N(m, s), w_1 = 9/8, w_3 = 1/8:
 ///
 ///   M_i  = u_max_i sum_k w_k exp(-k^2 s_ii / 2) sin(k m_i)
 ///   S_ij = u_max_i u_max_j sum_kl w_k w_l cov(sin k x_i, sin l x_j)
 ///   gain: diagonal, u_max_i sum_k w_k k exp(-k^2 s_ii / 2) cos(k m_i)
 class Squashing {
  public:
-  /// @param max_control  u_max > 0, one for each control
+  /// @param max_control  u_max > 0, one entry per control input
   explicit Squashing(Eigen::VectorXd max_control);
 
   int dim() const { return static_cast<int>(max_control_.size()); }
@@ -81,22 +81,23 @@ class Squashing {
 
   Moments predict(const Gaussian& input) const;
 
-  /// Moments of squash(y) from those of y, which is taken as Gaussian.
+  /// Moments of squash(y) from those of y. y is approximated by a Gaussian.
   Moments applyTo(const Moments& y) const;
 
-  /// Vector-Jacobian product of predict() at the same input. Only the diagonal of dJ/dV counts.
+  /// Vector-Jacobian product of predict() at the same input. Only the diagonal of dJ/dV is used,
+  /// because the gain is diagonal.
   Gaussian backward(const Gaussian& input, const Moments& d_output) const;
 
  private:
   Eigen::VectorXd max_control_;
 };
 
-/// Moments of u = squash(pi(x)). pi(x) is taken as Gaussian in between; the gain is that of pi
-/// times the (diagonal) gain of the squashing.
+/// Moments of u = squash(pi(x)). pi(x) is approximated by a Gaussian; the gain is the gain of pi
+/// times the diagonal gain of the squashing.
 class SquashedPolicy {
  public:
-  /// @param policy       pi, before squashing
-  /// @param max_control  u_max, one for each control
+  /// @param policy       pi, without squashing
+  /// @param max_control  u_max, one entry per control input
   SquashedPolicy(RbfPolicy policy, const Eigen::VectorXd& max_control);
 
   int inputDim() const { return policy_.inputDim(); }
@@ -104,12 +105,12 @@ class SquashedPolicy {
   Eigen::VectorXd parameters() const { return policy_.parameters(); }
   void setParameters(const Eigen::VectorXd& p) { policy_.setParameters(p); }
 
-  /// As in RbfPolicy.
+  /// See RbfPolicy.
   Moments predict(const Gaussian& input) const;
   Gaussian backward(const Gaussian& input, const Moments& d_output,
                     Eigen::VectorXd* d_parameters) const;
 
-  /// Control for known features: the mean of predict() with zero covariance.
+  /// The control input for known features: the mean of predict() with zero covariance.
   Eigen::VectorXd control(const Eigen::VectorXd& features) const;
 
  private:

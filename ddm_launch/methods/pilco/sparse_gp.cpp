@@ -1,4 +1,4 @@
-// Sparse GP (FITC): a few inducing inputs instead of all training inputs.
+// Sparse GP (FITC), which has a few inducing inputs instead of all training inputs.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -17,8 +17,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kLogTwoPi = 1.8378770664093453;
 
-/// The matrices of one output. B = L M L^T with Kmm = L L^T, M = I + V diag(lambda)^-1 V^T and
-/// V = L^-1 Kmn: M is much better conditioned than B.
+/// Matrices of one output. B = L M L^T with Kmm = L L^T, M = I + V diag(lambda)^-1 V^T and
+/// V = L^-1 Kmn. M is much better conditioned than B.
 struct Fitc {
   Fitc(const Eigen::MatrixXd& inducing, const Eigen::MatrixXd& inputs,
        const Eigen::VectorXd& theta) {
@@ -47,9 +47,9 @@ struct Fitc {
   /// B^-1 Kmn diag(lambda)^-1 y
   Eigen::VectorXd beta(const Eigen::VectorXd& y) const { return backsolve(m.solve(v_scaled * y)); }
 
-  Eigen::MatrixXd k_mm;           ///< without ridge                                     [m x m]
+  Eigen::MatrixXd k_mm;           ///< Kmm without ridge                                 [m x m]
   Eigen::MatrixXd k_mn;           ///<                                                   [m x n]
-  Eigen::LLT<Eigen::MatrixXd> l;  ///< factor of Kmm with ridge
+  Eigen::LLT<Eigen::MatrixXd> l;  ///< Cholesky factor of Kmm with ridge
   Eigen::MatrixXd v;              ///<                                                   [m x n]
   Eigen::ArrayXd lambda;          ///<                                                       [n]
   Eigen::MatrixXd v_scaled;       ///< V diag(lambda)^-1                                 [m x n]
@@ -57,8 +57,8 @@ struct Fitc {
   bool positive_definite = false;
 };
 
-/// Adds the gradient in Z of one output's likelihood. With T = Kmm^-1 Kmn, R = B^-1 Kmn
-/// diag(lambda)^-1, alpha = C^-1 y and w_i = [C^-1]_ii - alpha_i^2:
+/// Adds the gradient of one output's likelihood with respect to Z. With T = Kmm^-1 Kmn, R = B^-1
+/// Kmn diag(lambda)^-1, alpha = C^-1 y and w_i = [C^-1]_ii - alpha_i^2:
 ///
 ///   dL/dKmn = R - beta alpha^T - T diag(w),   dL/dKmm = -1/2 (dL/dKmn) T^T
 void addGradient(const Fitc& fitc, const Eigen::MatrixXd& inducing, const Eigen::MatrixXd& inputs,
@@ -71,7 +71,7 @@ void addGradient(const Fitc& fitc, const Eigen::MatrixXd& inducing, const Eigen:
   const Eigen::ArrayXd w = inverse_diagonal - alpha.array().square();
   Eigen::MatrixXd d_mn = r - beta * alpha.transpose() - t * w.matrix().asDiagonal();
   Eigen::MatrixXd d_mm = -0.5 * d_mn * t.transpose();
-  d_mm += d_mm.transpose().eval();  // z_k is in row and column k
+  d_mm += d_mm.transpose().eval();  // z_k affects both row k and column k
   d_mn.array() *= fitc.k_mn.array();
   d_mm.array() *= fitc.k_mm.array();
 
@@ -94,12 +94,12 @@ double outputLikelihood(const Eigen::MatrixXd& inducing, const Eigen::MatrixXd& 
          0.5 * fitc.lambda.log().sum() + 0.5 * static_cast<double>(y.size()) * kLogTwoPi;
 }
 
-/// `count` different numbers of 0 ... n - 1 in random order.
+/// Draws `count` different numbers out of 0 ... n - 1, in random order.
 std::vector<Eigen::Index> randomIndices(Eigen::Index n, int count, std::mt19937_64* rng) {
   eigen_assert(count >= 1 && count <= n);
   std::vector<Eigen::Index> order(static_cast<std::size_t>(n));
   std::iota(order.begin(), order.end(), 0);
-  std::shuffle(order.begin(), order.end(), *rng);  // results are fixed for libstdc++
+  std::shuffle(order.begin(), order.end(), *rng);  // other standard libraries draw other numbers
   order.resize(static_cast<std::size_t>(count));
   return order;
 }
@@ -111,8 +111,7 @@ Eigen::MatrixXd columnsOf(const Eigen::MatrixXd& matrix, const std::vector<Eigen
   return out;
 }
 
-/// The full GP. Where it will be replaced by a sparse one, its hyper-parameters are all that
-/// counts.
+/// Trains the full GP. If a sparse GP will replace it, only its hyper-parameters are needed.
 GpFit trainFull(const GpTrainingOptions& training, bool sparse, const Hyperparameters* start,
                 const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets, std::mt19937_64* rng,
                 const std::function<void()>& on_evaluation) {
@@ -130,7 +129,8 @@ GpFit trainFull(const GpTrainingOptions& training, bool sparse, const Hyperparam
   return full;
 }
 
-/// A state may come from a file.
+/// Checks the sizes of a state, which may come from a file.
+/// @throws std::invalid_argument if a size does not fit
 void requireFit(const GpLearnerState& state, Eigen::Index input_dim, Eigen::Index output_dim) {
   const Eigen::MatrixXd& scales = state.hyperparameters.log_length_scales;
   require(scales.rows() == input_dim && scales.cols() == output_dim &&

@@ -1,4 +1,4 @@
-// Features of a state with angles, and the saturating cost of a state.
+// Features of a state that contains angles, and the saturating cost of a state.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pilco/state_cost.h"
 
@@ -10,7 +10,7 @@
 namespace ddm::pilco {
 namespace {
 
-/// exp(-v) (exp(c) - 1): exact for small c, and finite where exp(c) alone is not.
+/// exp(-v) (exp(c) - 1), accurate for small c and finite even if exp(c) overflows.
 double scaledGrowth(double v, double c) {
   return std::abs(c) < 1.0 ? std::exp(-v) * std::expm1(c) : std::exp(c - v) - std::exp(-v);
 }
@@ -78,7 +78,7 @@ Moments Augmentation::predict(const Gaussian& input) const {
     output.gain(i, sine) = output.mean[sine + 1];
     output.gain(i, sine + 1) = -output.mean[sine];
   }
-  // cov(x, y) = s gain is exact, so it also holds the rows of the kept entries.
+  // cov(x, y) = s gain is exact and therefore contains the rows of the kept entries.
   const Eigen::MatrixXd with_input = s * output.gain;
   for (int k = 0; k < num_kept; ++k) {
     output.covariance.row(k) = with_input.row(kept_[k]);

@@ -1,4 +1,4 @@
-// Features of a state with angles, and the saturating cost of a state.
+// Features of a state that contains angles, and the saturating cost of a state.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -9,10 +9,11 @@
 
 namespace ddm::pilco {
 
+/// Derivatives of sineCovariance() with respect to its arguments.
 struct SineCovarianceGradient {
   double mean_a = 0.0;
   double mean_b = 0.0;
-  double variance = 0.0;  ///< in either variance
+  double variance = 0.0;  ///< with respect to either variance
   double covariance = 0.0;
 };
 
@@ -21,8 +22,9 @@ struct SineCovarianceGradient {
 ///   (p cos(m_a - m_b) - r cos(m_a + m_b)) / 2,   p = q (e^c - 1),  r = q (e^-c - 1),
 ///   q = exp(-(v_a + v_b) / 2)
 ///
-/// A cosine is a sine whose mean is pi/2 greater. For a = b, c is the variance.
-/// @param gradient  (optional) out; the five arguments count as independent
+/// The cosine of an angle is the sine of an angle whose mean is pi/2 greater. For a = b, c is the
+/// variance.
+/// @param gradient  (optional) out: derivatives; the five arguments count as independent
 double sineCovariance(double mean_a, double mean_b, double variance_a, double variance_b,
                       double covariance, SineCovarianceGradient* gradient = nullptr);
 
@@ -32,18 +34,18 @@ double sineCovariance(double mean_a, double mean_b, double variance_a, double va
 ///   E[sin x] = exp(-v/2) sin m,                      E[cos x] = exp(-v/2) cos m
 ///   gain: row i, sine column exp(-v/2) cos m,  cosine column -exp(-v/2) sin m, otherwise 0
 ///
-/// and covariances by sineCovariance(). Without angles it picks the kept entries.
+/// and the covariances are sineCovariance(). Without angles, y consists of the kept entries.
 class Augmentation {
  public:
   /// @param input_dim  D
-  /// @param kept       indices of entries that are passed on as they are, may be empty
-  /// @param angles     indices i_1, i_2, ... [rad], may be empty
+  /// @param kept       indices of entries that y contains unchanged; may be empty
+  /// @param angles     indices i_1, i_2, ... of angles [rad]; may be empty
   Augmentation(int input_dim, std::vector<int> kept, std::vector<int> angles);
 
   int inputDim() const { return input_dim_; }
   int outputDim() const;
 
-  /// Value for a known x, e.g. a measurement.
+  /// The value for a known x, e.g. a measurement.
   Eigen::VectorXd value(const Eigen::VectorXd& x) const;
 
   Moments predict(const Gaussian& input) const;
@@ -58,12 +60,12 @@ class Augmentation {
   std::vector<int> angles_;
 };
 
-/// All entries that are no angles, in their order, then sine and cosine of the angles: what the GP
-/// and the policy see of a state.
+/// All entries that are not angles, in their order, then sine and cosine of each angle. GP and
+/// policy receive these features of a state.
 Augmentation replaceAngles(int input_dim, const std::vector<int>& angles);
 
-/// c(x) = 1 - exp(-1/2 (y - z)^T W (y - z)) (Deisenroth and Rasmussen, 2011) with the features y of an
-/// Augmentation, which are taken as Gaussian. For y ~ N(m, s), with P_k = W (I + k s W)^-1:
+/// c(x) = 1 - exp(-1/2 (y - z)^T W (y - z)) (Deisenroth and Rasmussen, 2011) with the features y of
+/// an Augmentation. y is approximated by a Gaussian N(m, s). With P_k = W (I + k s W)^-1:
 ///
 ///   E[c]         = 1 - |I + s W|^-1/2 exp(-1/2 (m - z)^T P_1 (m - z))
 ///   E[(1 - c)^2] = |I + 2 s W|^-1/2 exp(-(m - z)^T P_2 (m - z))
@@ -77,10 +79,10 @@ class StateCost {
   int inputDim() const { return features_.inputDim(); }
 
   /// E[c].
-  /// @param d_state  (optional) out: derivatives of E[c] by mean and covariance of x (symmetric)
+  /// @param d_state  (optional) out: derivatives of E[c] by mean and covariance of x; symmetric
   double expected(const Gaussian& state, Gaussian* d_state = nullptr) const;
 
-  /// var[c]. What is below 1e-12 is rounding and becomes 0.
+  /// var[c]. Values below 1e-12 are rounding errors and become 0.
   double variance(const Gaussian& state) const;
 
  private:
@@ -89,10 +91,10 @@ class StateCost {
   Eigen::MatrixXd weight_;
 };
 
-/// 1 - exp(-d^2 / (2 width^2)), d the distance of the tip of a pendulum from its upright position.
-/// State [dphi, phi], phi = pi upright.
-/// @param length  of the pendulum [m]
-/// @param width   [m]
+/// 1 - exp(-d^2 / (2 width^2)) with the distance d of the tip of a pendulum from its upright
+/// position. The state is [dphi, phi]; phi = pi is upright.
+/// @param length  length of the pendulum [m]
+/// @param width   width of the cost [m]
 StateCost pendulumCost(double length = 1.0, double width = 0.5);
 
 }  // namespace ddm::pilco

@@ -1,4 +1,4 @@
-// benchmark_kernels: computing times, by Google Benchmark, on a finished experiment, and round trips between nodes.
+// benchmark_kernels: measures computing times on a finished experiment, and message round trips.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <benchmark/benchmark.h>
 #include <ddm_bag_io/bag_cache.h>
@@ -28,7 +28,7 @@
 
 namespace ddm {
 
-bool timesRoundTrips(int argc, char** argv);  // see round_trips.cpp
+bool timesRoundTrips(int argc, char** argv);  // defined in round_trips.cpp
 
 namespace {
 
@@ -44,7 +44,7 @@ constexpr char kAbout[] =
     "       rosrun ddm_launch benchmark_kernels lockstep|bare_camera|bare_controller NUM_FRAMES\n\n"
     "`rosrun ddm_launch qa benchmark` runs both.";
 
-/// What a finished experiment has left behind.
+/// Results of a finished experiment: its configuration, all samples, and its last model.
 struct Experience {
   Configuration configuration;
   DataSet data;
@@ -65,7 +65,8 @@ Experience readExperience(const std::string& run) {
 
 double percentile99(const std::vector<double>& values) { return quantile(values, 0.99); }
 
-/// Each repetition is one call: their quantiles are those of single calls.
+/// Registers a benchmark. Each repetition has one call, so that quantiles over repetitions are
+/// those of single calls.
 void measure(const std::string& name, int num_calls, const std::function<void()>& call) {
   benchmark::RegisterBenchmark(name.c_str(),
                                [call](benchmark::State& state) {
@@ -78,16 +79,17 @@ void measure(const std::string& name, int num_calls, const std::function<void()>
       ->Unit(benchmark::kMicrosecond);
 }
 
-/// W a, delta a^T and W^T delta of each layer of g^-1, g and f, on random matrices: what no
-/// implementation of an objective with its gradient leaves out, and nothing else. f predicts
-/// num_steps features from each image, and the decoder has those and the image's own.
+/// The matrix products W a, delta a^T and W^T delta of each layer of g^-1, g and f, with random
+/// matrices. Every implementation of V_R + V_P and its gradient needs these products, so their time
+/// is a lower bound. f predicts num_steps features from each image, and the decoder decodes these
+/// features and that of the image.
 class MatrixProducts {
  public:
-  /// @param block  so many of the samples go through all networks before the next ones do
+  /// @param block  number of samples that go through all networks together
   MatrixProducts(const Networks<float>& networks, Eigen::Index num_samples, int num_steps,
                  Eigen::Index block)
       : num_blocks_((num_samples + block - 1) / block) {
-    add(networks.encoder(), block, false);  // nothing is learned before the images
+    add(networks.encoder(), block, false);  // the encoder's inputs need no gradient
     add(networks.f(), num_steps * block, true);
     add(networks.decoder(), (1 + num_steps) * block, true);
   }
@@ -149,7 +151,7 @@ void measureTraining(const Experience& experience) {
   const ModelConfig& config = experience.configuration.model;
   TrainingOptions training = config.training;
   training.max_iterations = kRetrainIterations;
-  training.function_tolerance = 1e-30;  // so many iterations, whatever they are good for
+  training.function_tolerance = 1e-30;  // always run all iterations
   measure("retrain", 10, [&experience, &config, training]() {
     const TrainingResult result = train(experience.data, config.model, training, ModelInfo());
     if (result.iterations < kRetrainIterations * training.num_starts) {
@@ -159,7 +161,8 @@ void measureTraining(const Experience& experience) {
   });
 }
 
-/// Greedy trials on the true plant, one plan after the other.
+/// Plans of evaluations on the true plant. The first torque of each plan moves the plant before the
+/// next plan.
 class PlanSequence {
  public:
   explicit PlanSequence(const Experience& experience)
@@ -189,7 +192,7 @@ class PlanSequence {
   int step_ = 0;
 };
 
-/// Plans along greedy trials, one after the other.
+/// Measures the time of plans along evaluations.
 void measurePlans(const Experience& experience) {
   const auto sequence = std::make_shared<PlanSequence>(experience);
   benchmark::RegisterBenchmark("plan",

@@ -1,4 +1,4 @@
-// Round trips of images and torques between nodes, for `rosrun ddm_launch qa benchmark`.
+// Measures round trips of images and torques between nodes, for `rosrun ddm_launch qa benchmark`.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_common/image_codec.h>
 #include <ddm_msgs/Torque.h>
@@ -25,7 +25,8 @@ const ros::TransportHints kNoDelay = ros::TransportHints().tcpNoDelay();
 
 class Stopwatch {
  public:
-  /// So many round trips by now. The first ones do not count: connections and caches are new.
+  /// Reports that `number` round trips are complete. Ignores the first kWarmUp round trips, in
+  /// which connections and caches are new.
   void tick(int number) {
     if (number < kWarmUp) return;
     last_ = Clock::now();
@@ -35,8 +36,8 @@ class Stopwatch {
     num_first_ = number;
   }
 
-  /// Mean [us].
-  /// @throws std::runtime_error if fewer than two have been told
+  /// Mean time of a round trip [us].
+  /// @throws std::runtime_error if fewer than two round trips have been reported
   double mean() const {
     if (num_last_ <= num_first_) throw std::runtime_error("no round trip was timed");
     return std::chrono::duration<double, std::micro>(last_ - first_).count() /
@@ -51,7 +52,8 @@ class Stopwatch {
   int num_first_ = 0, num_last_ = 0;
 };
 
-/// Times the real nodes by the feedback of their trial: to hear of each frame would be a load.
+/// Times the real nodes through the feedback of their trial. Subscribing to each image would add
+/// load.
 void timeLockstep(const ros::NodeHandle& nh, int num_frames, Stopwatch* watch) {
   RosDriver::Peers peers;
   peers.recorder = peers.trainer = false;
@@ -103,15 +105,15 @@ void answerImages(ros::NodeHandle* nh) {
 
 }  // namespace
 
-/// Runs one node of a loop, if the first argument says so; the second is the number of round trips.
-/// The one that times them prints their mean [us].
+/// Runs one node of a loop if the first argument is its role. The second argument is the number of
+/// round trips. The node that measures them prints the mean [us].
 ///
-///   lockstep         has the real nodes run a random trial, without recorder
-///   bare_camera      publishes an image as soon as the last one has its torque
-///   bare_controller  answers images by torques
+///   lockstep         lets the real nodes run a random trial, without recorder
+///   bare_camera      publishes an image as soon as the torque for the previous image arrives
+///   bare_controller  answers each image with a torque
 ///
-/// @return false if the first argument is another
-/// @throws std::runtime_error if the nodes do not come or nothing was timed
+/// @return false if the first argument is not a role
+/// @throws std::runtime_error if a node does not appear or no round trip was timed
 bool timesRoundTrips(int argc, char** argv) {
   const std::string role = argv[1];
   if (role != "lockstep" && role != "bare_camera" && role != "bare_controller") return false;

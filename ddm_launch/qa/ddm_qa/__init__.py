@@ -1,2 +1,2 @@
-# What attacks and times the code. Not installed.
+# Fault injection, soak tests and benchmarks. This package is not installed.
 # SPDX-License-Identifier: BSD-3-Clause

@@ -1,4 +1,4 @@
-# Times what users wait for, in one table.
+# benchmark: measures the computing times that users notice, and writes them into one table.
 # SPDX-License-Identifier: BSD-3-Clause
 import contextlib
 import json
@@ -19,7 +19,7 @@ LOOPS = ("lockstep", "bare")
 COLUMNS = ["name", "median_us", "p99_us"]
 TRIALS, SEEDS, RESTARTS, NUM_FRAMES = 15, 10, 9, 10000
 ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
-LIMIT_S = 900.0  # of a program
+LIMIT_S = 900.0  # time limit of a program
 
 ABOUT = """\
 Times objective and gradient, one retraining and plans on the 1600 images of an experiment that it runs first; the
@@ -46,20 +46,24 @@ DIR/machine.yaml       processor, version, iterations of a plan"""
 
 
 class Benchmark:
+    """Measures all rows of speed.csv. out: folder for the results. scratch: temporary folder for the experiments."""
+
     def __init__(self, out, scratch):
         self.out, self.scratch = os.path.abspath(out), scratch
-        self.rows = {}  # name: {column: [us]}
-        self.wall_us = {}  # name: of each run
+        self.rows = {}  # name: {column: time [us]}
+        self.wall_us = {}  # name: times of all experiments [us]
         self.plan_iterations = None
 
     def call(self, program, *arguments, **variables):
-        """What a program printed. variables: of its environment."""
+        """Runs a program and returns its output. variables: environment variables. Raises Failure if the program
+        fails."""
         process = Process([find_program(program), *arguments], on_this_machine(**dict(ONE_THREAD, **variables)))
         if process.waitForEnd(LIMIT_S) != 0:
             raise Failure("%s failed:\n%s" % (program, process.output[-2000:]))
         return process.output
 
     def keep_wall_time(self, name, run):
+        """Records the time of an experiment in the row `name`. Raises Failure if the experiment did not finish."""
         summary = read_yaml(os.path.join(run, "summary.yaml"))
         if summary.get("finished") is not True:
             raise Failure("%s: the experiment did not finish" % name)
@@ -67,7 +71,7 @@ class Benchmark:
         self.rows[name] = {"median_us": statistics.median(self.wall_us[name])}
 
     def experiment(self, name="experiment", preset="paper", seed=0, threads=1):
-        """Leaves the run of seed 0 in SCRATCH/NAME."""
+        """Runs an experiment and records its time. The run folder of seed 0 is SCRATCH/NAME."""
         run = os.path.join(self.scratch, name + ("_%d" % seed if seed else ""))
         self.call("run_experiment", "--preset", preset, "--plant", "pendulum", "--seed", seed, "--trials", TRIALS, "--out", run,
                   OMP_NUM_THREADS=str(threads))
@@ -85,13 +89,13 @@ class Benchmark:
         self.keep_wall_time("ros_experiment", run)
 
     def kernels(self, prefix=""):
-        """Of the experiment of this prefix."""
+        """Measures the computing times on the experiment with this prefix."""
         report = os.path.join(self.scratch, "kernels.json")
         self.call("benchmark_kernels", os.path.join(self.scratch, prefix + "experiment"), "--benchmark_out_format=json",
                   "--benchmark_out=" + report)
         with open(report) as stream:
             found = json.load(stream)["benchmarks"]
-        times = {}  # name: {median, p99}
+        times = {}  # name: {statistic: time [us]}
         for row in found:
             if row.get("error_occurred"):
                 raise Failure("%s: %s" % (row["name"], row.get("error_message", "failed")))
@@ -105,12 +109,12 @@ class Benchmark:
             self.rows[prefix + kernel] = {"median_us": found["median"], "p99_us": found["p99"]}
 
     def round_trips(self, progress):
-        """Restarts of both loops, on all cores and on one, taking turns."""
+        """Measures both loops RESTARTS times, alternately on all cores and on one core."""
         all_cores, times = os.sched_getaffinity(0), {}
         for _ in range(RESTARTS):
             for loop in LOOPS:
                 for suffix, cores in (("", all_cores), ("_one_core", {min(all_cores)})):
-                    os.sched_setaffinity(0, cores)  # what is started from here on inherits it
+                    os.sched_setaffinity(0, cores)  # child processes inherit the affinity
                     try:
                         times.setdefault(loop + "_round_trip" + suffix, []).append(self.round_trip_us(loop))
                     finally:
@@ -120,7 +124,7 @@ class Benchmark:
             self.rows[name] = {"median_us": statistics.median(means)}
 
     def round_trip_us(self, loop):
-        """The mean of one start of one of LOOPS."""
+        """Starts one of LOOPS and returns the mean time of its round trips [us]."""
         port = free_port()
         master = dict(ONE_THREAD, ROS_MASTER_URI="http://localhost:%d" % port, ROS_HOME=self.scratch)
         with contextlib.ExitStack() as running:
@@ -128,7 +132,7 @@ class Benchmark:
                 nodes = running.enter_context(start_roslaunch(
                     self.scratch, "nodes.launch", "preset:=paper", "plant:=pendulum", "recorder:=false", "trainer:=false",
                     port=port, variables=ONE_THREAD))
-                nodes.waitForText("process[mpc_node", 60.0)  # its parameters, use_sim_time among them, are set by then
+                nodes.waitForText("process[mpc_node", 60.0)  # the node is started after all parameters are set
             else:
                 for command in (["roscore", "-p", port], [find_program("benchmark_kernels"), "bare_controller"]):
                     running.enter_context(Process(command, on_this_machine(**master)))
@@ -144,7 +148,7 @@ class Benchmark:
             for name, step in steps + [("lock-step and bare loop", lambda: self.round_trips(progress))]:
                 progress.set_description(name)
                 step()
-                self.write()  # after each step: what was timed is kept if a later one fails
+                self.write()  # after each step, so that a later failure loses no results
                 progress.update(1)
 
     def write(self):

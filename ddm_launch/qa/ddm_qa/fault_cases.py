@@ -1,14 +1,14 @@
-# The table of faults: what can happen to an experiment, and what must come of it.
+# The table of faults: each fault that the tests inject into an experiment, and the expected outcome.
 # SPDX-License-Identifier: BSD-3-Clause
 import collections
 import itertools
 
-# Outcomes; fault_run.py has a check for each word.
+# Outcomes. fault_run.py has a method that checks each word.
 RECOVERS = "finished, equal"
 NOTICED = "finished, named, equal"
 ENDS = "ended, named, undamaged, resumes, equal"
 ENDS_IN_FIRST_TRIAL = "ended, named, resumes, equal"
-KILLED = "ended, undamaged, resumes, equal"  # roslaunch names the node, and ends the others at once
+KILLED = "ended, undamaged, resumes, equal"  # roslaunch reports the node and ends the others
 KILLED_IN_FIRST_TRIAL = "ended, resumes, equal"
 STAYS = "ended, named, unchanged, undamaged, resumes, equal"
 REFUSED = "refused, named, acts when restored"
@@ -17,19 +17,21 @@ GOES_ON_AFTER_ZERO = "finished, zero"
 GOES_ON_NAMED_AFTER_ZERO = "finished, named, zero"
 ENDS_WITH_ZERO = "ended, named, zero, undamaged, resumes"
 
-# name: unique. phase, fault: when and what, as fault_injector and fault_run.py read them. words: which the output must have.
+# name: unique name. phase, fault: time and kind of the fault, in the words of fault_injector and fault_run.py.
+# expected: outcome. words: texts that the output must contain.
 Case = collections.namedtuple("Case", "name phase fault expected words")
-FAULTS_OF_ROOT = ("read-only folder", "fill disk")  # these mount a read-only or a small file system
+FAULTS_OF_ROOT = ("read-only folder", "fill disk")  # mount a read-only or a small file system
 
 NODES = "sim_node|mpc_node|trial_recorder|model_node|experiment_node|master"
-AT_REST, REAL_TIME, ON_A_ROBOT = "at rest", " in real time", " on a robot"  # the latter two: ends of names
+# REAL_TIME and ON_A_ROBOT are suffixes of phases.
+AT_REST, REAL_TIME, ON_A_ROBOT = "at rest", " in real time", " on a robot"
 FIRST, EXPLORING, RECORDING, TRAINING, EVALUATION = PHASES = (
     "random trial", "exploring trial", "recording", "training", "evaluation")
 RUNS = (EXPLORING, EVALUATION)
 NO_TORQUES = "nan|inf|none|twice|1e300"
 CHANGE = "the images change from 51x51 mono8 to "
 FULL = ("cannot", "No space left on device")
-# The small subset: some cases of each class.
+# A small subset with some cases of each class.
 QUICK = (
     "kill mpc_node in evaluation", "lose sim_node in exploring trial", "drop image in exploring trial",
     "publish torque in exploring trial", "cut chunk of trial.bag at rest", "fill disk in random trial",
@@ -37,7 +39,10 @@ QUICK = (
 
 
 def cases(phases, *rows):
-    """A case for each phase and row (fault, expected, words of the output); the fault `a|b c` stands for `a c` and `b c`."""
+    """Yields a case for each phase and row (fault, expected, words of the output).
+
+    The fault `a|b c` gives the cases `a c` and `b c`.
+    """
     for phase in phases:
         for alternatives, expected, *words in rows:
             for parts in itertools.product(*(part.split("|") for part in alternatives.split())):
@@ -47,15 +52,16 @@ def cases(phases, *rows):
 
 
 def real_time(run):
-    """The plant does not wait: whatever happens, the motor must stop by itself, and no torque that came too late or
-    never reached the motor may be learned from."""
+    """Cases with a plant that does not wait for torques. After each fault the motor must stop by itself, and the model
+    must not learn from torques that arrived too late or never reached the motor."""
     learns = ", learned what acted" if run == EXPLORING else ""
     return cases([run + REAL_TIME],
-                 # For the plant it is as good as dead. If it were killed, roslaunch would end the plant as well.
+                 # A stopped node looks dead to the plant. A killed node would not do, because roslaunch would then end
+                 # the plant, too.
                  ("hold mpc_node", ENDS_WITH_ZERO, "action /run_trial shows no sign of life"),
                  ("pause mpc_node", GOES_ON_AFTER_ZERO + learns),
                  ("mute image", ENDS_WITH_ZERO, "no image after step", "/fault_injector"),
-                 ("mute torque", GOES_ON_AFTER_ZERO + learns),  # a motor that hears nothing says nothing
+                 ("mute torque", GOES_ON_AFTER_ZERO + learns),  # a motor that gets no torque reports nothing
                  ("late image|torque", GOES_ON_AFTER_ZERO + learns),
                  ("alter torque " + NO_TORQUES, ENDS_WITH_ZERO, "torque refused", "/fault_injector"),
                  ("publish torque", ENDS_WITH_ZERO, "torque refused", "/intruder"))
@@ -65,33 +71,34 @@ CASES = [
     # Processes that end or stop for a while.
     *cases([FIRST], ("kill " + NODES, KILLED_IN_FIRST_TRIAL)),
     *cases(PHASES[1:], ("kill " + NODES, KILLED), ("pause " + NODES, RECOVERS)),
-    # A node that dies out of roslaunch's sight, is stopped for longer than any other node waits, or for good: the nodes
-    # that wait for it say so.
+    # A node that dies without roslaunch's notice, or is stopped for longer than other nodes wait, or for good. The
+    # nodes that wait for this node must report it.
     *cases(RUNS, ("lose|oversleep|hold sim_node", ENDS, "no image after step", "action /run_trial"),
            ("lose|oversleep|hold mpc_node", ENDS, "no torque for frame", "action /run_trial")),
     *cases([EXPLORING], ("lose|oversleep|hold trial_recorder", ENDS, "service /stop_recording does not answer")),
     *cases([TRAINING], ("lose|oversleep|hold model_node", ENDS, "action /train shows no sign of life")),
-    # No node says whether the last torque acted.
+    # No node confirms the last torque of a trial.
     *cases([RECORDING], ("lose sim_node", ENDS, "service /stop_recording")),
     *cases([TRAINING], ("lose sim_node", ENDS, "service /reset does not answer")),
     *cases([RECORDING, TRAINING], ("lose mpc_node", ENDS, "action /run_trial shows no sign of life")),
-    # Connected nodes need no master: the experiment takes longer, since each of its questions to the master has a limit.
+    # Connected nodes need no master. The experiment takes longer, because each request to the master runs into its time
+    # limit.
     *cases(RUNS + (TRAINING,), ("hold master", NOTICED, "the ROS master does not answer")),
 
     # Messages that are lost, late, repeated or from another publisher.
     *cases(RUNS, ("drop image|torque", ENDS, "no torque for frame 7 ", "/fault_injector"),
            ("double|late|repeat image|torque", RECOVERS), ("publish torque|image|model|clock", ENDS, "/intruder"),
-           ("mute clock", RECOVERS)),  # no node waits for time to pass
+           ("mute clock", RECOVERS)),  # no node waits for simulated time to pass
 
     *real_time(EXPLORING), *real_time(EVALUATION),
-    *cases(["every run" + REAL_TIME],  # plans that would go on for minutes
+    *cases(["every run" + REAL_TIME],  # plans that would take minutes
            ("long plans", "ended, named", "no plan for step 1", "mpc/time_budget"),
            ("long plans with a budget", "finished, in time")),
 
-    # A wrong clock, old joint states, another camera, a dead controller or a joint beyond its limits must bring zero torque
-    # within two dt and 50 ms.
+    # A wrong clock, old joint states, another camera, a dead controller, or a joint beyond its limits must lead to zero
+    # torque within two time steps and 50 ms.
     *cases([run + ON_A_ROBOT for run in RUNS],
-           ("future image", ENDS_WITH_ZERO, "no image after step"),  # and then silence
+           ("future image", ENDS_WITH_ZERO, "no image after step"),  # no further image follows
            ("set clock forward", GOES_ON_NAMED_AFTER_ZERO, "the camera's clock has jumped forward"),
            ("set clock back", GOES_ON_NAMED_AFTER_ZERO, "before the one that came before it"),
            ("age joints", GOES_ON_NAMED_AFTER_ZERO, "joint_states does not report"),
@@ -100,14 +107,14 @@ CASES = [
            ("exceed position", ENDS_WITH_ZERO, "robot/position_limits", "was cancelled"),
            ("exceed speed", ENDS_WITH_ZERO, "robot/speed_limit", "was cancelled")),
 
-    # Messages with values that must not be used.
+    # Messages with invalid values.
     *cases(RUNS, ("alter torque " + NO_TORQUES, ENDS, "torque refused", "/fault_injector"),
            ("alter image size", ENDS, CHANGE + "25x25 mono8"), ("alter image encoding", ENDS, CHANGE + "51x51 rgb8")),
     *cases([EXPLORING], ("alter image unknown", ENDS, CHANGE + "51x51 smell"),
            ("alter image cut", ENDS, "image refused", "data must hold"),
            ("alter image unstamped", ENDS, "image refused", "it has no stamp")),
 
-    # Files that are damaged, and folders that cannot be used.
+    # Damaged files, and folders that cannot be used.
     *cases([AT_REST],
            ("cut version|header|chunk|index|connection|chunk_info of trial.bag", STAYS, "trial_000/trial.bag"),
            ("flip chunk of trial.bag", STAYS, "trial_000/trial.bag"),

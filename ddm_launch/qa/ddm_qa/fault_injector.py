@@ -1,8 +1,9 @@
-# fault_injector: relays the messages between a plant and its controller, and does one thing wrong at one moment.
+# fault_injector: relays the messages between plant and controller, and injects one fault at a given moment.
 # SPDX-License-Identifier: BSD-3-Clause
-"""The moment is exact: the injector sees each reset, image and torque before the message arrives, and holds the message
-until the fault is done. Only a training is hit wherever it is when its first progress is heard. The report says what the
-experiment had finished at that moment, and what the motor did afterwards."""
+"""The injector gets each reset, image and torque before the recipient does, and holds the message until the fault is
+injected, so the moment of a fault is exact. The phase `training` is an exception: its fault comes when the first
+progress of the training arrives. The report contains the trials that were finished at that moment, and the torques that
+acted afterwards."""
 import copy
 import collections
 import json
@@ -28,20 +29,21 @@ from ddm_qa.fault_cases import ON_A_ROBOT, REAL_TIME
 from ddm_qa.processes import pid_of
 from ddm_qa.run_comparison import Finished
 
-# (trial, whether it is the evaluation after it). `recording` is when the last torque has been sent: the bag is closed.
+# (trial, whether the phase belongs to the evaluation after the trial). `recording` begins with the last torque of the
+# trial, when the recorder closes the bag.
 RUN_OF_PHASE = {"random trial": (0, False), "exploring trial": (1, False), "recording": (1, False),
                 "evaluation": (1, True)}
-FRAME = 7          # of a trial or evaluation
-TRAINED_TRIAL = 1  # of the phase `training`
+FRAME = 7  # frame of a trial or evaluation at which the fault begins
+TRAINED_TRIAL = 1  # trial whose training the phase `training` means
 QUEUE = 1000
-IMAGE_BYTES = 1 << 24  # a robot's camera sends larger images than rospy reads at once
+IMAGE_BYTES = 1 << 24  # a robot's camera may send images larger than rospy's default buffer
 
-# How long a node stops, in terms of the first limit that another node has which waits for it.
+# Duration of a stop, relative to the shortest time limit of a node that waits for the stopped node.
 STOPS = {"pause": 0.6, "oversleep": 1.25, "hold": float("inf")}
 LIMITS = {"sim_node": ("controller", "timeout"), "mpc_node": ("sim", "watchdog")}
 OTHER_LIMIT = ("experiment", "timeout")
 
-# What an altered image or torque has that is not as it should be.
+# Changed fields of an altered image, torque or joint state.
 ALTERED = {
     "nan": lambda torque: {"torque": [float("nan")]}, "inf": lambda torque: {"torque": [float("inf")]},
     "1e300": lambda torque: {"torque": [1e300]}, "none": lambda torque: {"torque": []},
@@ -57,6 +59,7 @@ ALTERED = {
 
 
 def altered(message, how):
+    """Copy of a message with fields changed by ALTERED."""
     result = copy.deepcopy(message)
     for field, value in ALTERED[how](message).items():
         setattr(result, field, value)
@@ -64,19 +67,21 @@ def altered(message, how):
 
 
 def shifted(message, seconds):
-    """The message with another stamp."""
+    """Copy of a message with a shifted time stamp."""
     result = copy.deepcopy(message)
     result.header.stamp += rospy.Duration(seconds)
     return result
 
 
 def late(message):
+    """Delays a message by 1 s."""
     time.sleep(1.0)
     return [message]
 
 
-# What is passed on instead of a message, given the message before it and the last word of the fault. lasts: for how long
-# messages are changed [s]; 0: one message. topic: of the messages; None: the second word of the fault.
+# messages: function that returns the messages to relay in place of a message, from the message, its predecessor and the
+# last word of the fault. lasts: time during which messages are changed [s]; 0: one message. topic: changed topic; None:
+# the second word of the fault.
 Change = collections.namedtuple("Change", "messages lasts topic")
 CHANGES = {
     "drop": Change(lambda message, before, how: [], 0, None),
@@ -85,44 +90,46 @@ CHANGES = {
     "repeat": Change(lambda message, before, how: [before, message], 0, None),
     "alter": Change(lambda message, before, how: [altered(message, how)], 0, None),
     "mute": Change(lambda message, before, how: [], float("inf"), None),
-    # on a robot
-    "future": Change(lambda message, before, how: [shifted(message, 3600.0)], 0, None),  # and then silence
+    # Faults on a robot.
+    "future": Change(lambda message, before, how: [shifted(message, 3600.0)], 0, None),  # no further image follows
     "set": Change(lambda message, before, how: [shifted(message, 3600.0 if how == "forward" else -3600.0)], 1.5, "image"),
     "resize": Change(lambda message, before, how: [altered(message, "upper half")], float("inf"), None),
     "age": Change(lambda message, before, how: [shifted(message, -2.0)], 1.5, None),
     "exceed": Change(lambda message, before, how: [altered(message, how)], 0, "joints")}
 
-# Where a second publisher publishes what. On a robot, both topics of the torques are one.
+# Topics and message of a second publisher. On a robot, both torque topics are the same.
 INTRUDED = {"torque": (["torque", "plant/torque"], lambda: Torque(torque=[6.0])),
             "image": (["camera/image_raw"], lambda: Image(width=51, height=51, encoding="mono8", step=51, data=bytes(51 * 51))),
             "model": (["model"], lambda: Model(id="00000000", data=b"no model at all")), "clock": (["/clock"], Clock)}
 
 
 class Motor:
-    """Which torques act, and whether they are zero after a fault."""
+    """Records the torques that act, and judges whether they are zero after a fault."""
 
     def __init__(self):
         self.acted, self.stamp, self.since, self.until = [], None, float("inf"), float("inf")
 
     def acts(self):
+        """Whether a torque other than zero acts now."""
         return bool(self.acted) and self.acted[-1][1] != 0.0
 
     def begin(self, stamp=None, lasts=float("inf")):
-        """The fault begins. stamp: of the last image. lasts: after so many seconds the motor may run again."""
+        """Marks the beginning of the fault. stamp: time stamp of the last image. lasts: time after which the motor may run
+        again [s]."""
         self.stamp, self.since = stamp, time.time()
         self.until = self.since + lasts
 
     def torque_passes(self, now, stamp, may_run_again):
-        """A torque that answers an image from before the fault may still act. One that answers a later image ends the
-        fault, unless a refused torque must keep the motor off."""
+        """A torque that answers an image from before the fault may still act. A torque that answers a later image ends
+        the fault, unless the fault is a refused torque, after which the motor must stay off."""
         if self.stamp is not None and stamp < self.stamp:
             self.since = now
         elif self.stamp is not None and may_run_again:
             self.until = min(self.until, now)
 
     def verdict(self, limit_s, periods, fewest):
-        """`zero`, or what was seen instead. limit_s, periods: after which no torque may act. fewest: torques that tell
-        anything."""
+        """Returns `zero`, or a description of other torques. limit_s, periods: time and number of torques after which
+        no torque may act. fewest: number of torques that are needed for a verdict."""
         after = [torque for at, torque in self.acted if self.since + limit_s < at < self.until][periods:]
         if any(after):
             return "driven: " + " ".join("%g" % torque for torque in after if torque)[:60]
@@ -130,8 +137,9 @@ class Motor:
 
 
 def intrude(connection, other_end):
-    """A second publisher in a process of its own. The connection says what to publish, and then when."""
-    os.setsid()  # Ctrl-C is not for this process
+    """Publishes a message from a second process. The connection first receives the topic, then the signal to
+    publish."""
+    os.setsid()  # keeps Ctrl-C away from this process
     other_end.close()
     try:
         topics, make = INTRUDED[connection.recv()]
@@ -149,7 +157,8 @@ def intrude(connection, other_end):
         for topic, publisher in publishers.items():
             while publisher.get_num_connections() < len(dict(subscribers).get(rospy.resolve_name(topic), [])):
                 time.sleep(0.01)
-        # Only when every subscriber sees two publishers: fault_injector passes torques on, and the plant would take them.
+        # Publishes after all subscribers have connected to both publishers. Otherwise the plant could accept a torque
+        # before it notices the second publisher.
         for publisher in publishers.values():
             publisher.publish(message)
         connection.send("intruder is there")
@@ -159,6 +168,8 @@ def intrude(connection, other_end):
 
 
 class Injector:
+    """The node fault_injector. intruder: connection to the process of intrude()."""
+
     def __init__(self, intruder):
         phase, self.fault, self.runs, self.path = (rospy.get_param("~" + name) for name in ("phase", "fault", "runs", "report"))
         self.real_time, self.robot = phase.endswith(REAL_TIME), phase.endswith(ON_A_ROBOT)
@@ -171,7 +182,8 @@ class Injector:
         self.configuration = yaml.safe_load(rospy.get_param("configuration"))
         self.lock, self.report, self.done, self.changes_until = threading.Lock(), {}, False, 0.0
         self.run, self.frame, self.num_steps, self.stamp, self.last = None, -1, 0, None, {}
-        self.motor, self.stamps = Motor(), []  # stamps: of the images before which the torques acted [ns]
+        # stamps: time stamps of the images before which the torques acted [ns].
+        self.motor, self.stamps = Motor(), []
         self.trained, self.pids, self.killed, self.intruder = -1, None, False, intruder
         if self.verb == "publish":
             intruder.send(self.what)
@@ -179,7 +191,7 @@ class Injector:
         self.connect_robot() if self.robot else self.connect_simulator()
 
     def connect_robot(self):
-        """The injector stands between the sensors and robot_node."""
+        """Relays messages between the sensors and robot_node."""
         self.pass_on("image", "plant/camera/image_raw", "faults/image_raw", Image, 2)
         self.pass_on("joints", "plant/ground_truth/joint_states", "faults/joint_states", JointState)
         rospy.Subscriber("plant/effort_command", Float64, lambda effort: self.motor.acted.append((time.time(), effort.data)),
@@ -188,7 +200,8 @@ class Injector:
         rospy.Subscriber("run_trial/goal", RunTrialActionGoal, lambda goal: self.begin_run(goal.goal, 0), queue_size=QUEUE)
 
     def connect_simulator(self):
-        """The service comes last: the experiment waits for it, and then finds everything else in place."""
+        """Relays messages between the simulator and the other nodes. Offers the service `reset` last, because the
+        experiment waits for this service and then needs all other connections."""
         ends = self.pass_on("image", "plant/image_raw", "camera/image_raw", Image)
         ends += self.pass_on("torque", "torque", "plant/torque", Torque)
         self.pass_on("clock", "plant/clock", "/clock", Clock, latch=True)
@@ -198,19 +211,20 @@ class Injector:
         while not rospy.is_shutdown() and not all(end.get_num_connections() for end in ends):
             time.sleep(0.01)
         rospy.wait_for_service("plant/reset")
-        self.reset = rospy.ServiceProxy("plant/reset", Reset, persistent=True)  # needs no master
+        # A persistent connection needs no master.
+        self.reset = rospy.ServiceProxy("plant/reset", Reset, persistent=True)
         rospy.Service("reset", Reset, self.on_reset)
 
     def pass_on(self, name, source, destination, kind, queue_size=QUEUE, latch=False):
-        """Relays a topic. Returns both ends."""
+        """Relays a topic. Returns publisher and subscriber."""
         publisher = rospy.Publisher(destination, kind, queue_size=queue_size, tcp_nodelay=True, latch=latch)
         return [publisher, rospy.Subscriber(source, kind, lambda message: self.relay(name, message, publisher),
                                             queue_size=queue_size, buff_size=IMAGE_BYTES, tcp_nodelay=True)]
 
     def begin_run(self, request, frame):
-        """A trial or evaluation begins. frame: number of the last image."""
+        """Called when a trial or evaluation begins. frame: index of the last image."""
         if self.pids is None and (self.verb in ("kill", "lose") or self.verb in STOPS):
-            master = rosgraph.Master(rospy.get_name())  # only now all nodes are sure to be there
+            master = rosgraph.Master(rospy.get_name())  # only now do all nodes certainly exist
             self.pids = [pid_of(master, node) for node in (self.what, "experiment_node")]
         with self.lock:
             self.run, self.frame = (request.trial, request.evaluation), frame
@@ -239,7 +253,7 @@ class Injector:
             self.inject()
 
     def wait_for_end(self):
-        """roslaunch takes a moment to notice that a process is dead: meanwhile no message gets any further."""
+        """Holds messages after a node was killed, until roslaunch notices the dead process and ends this node."""
         while self.killed and not rospy.is_shutdown():
             time.sleep(0.01)
 
@@ -272,14 +286,16 @@ class Injector:
             try:
                 publisher.publish(each)
             except rospy.ROSException:
-                if not rospy.core.is_shutdown_requested():  # in real time the plant goes on while this node ends
+                if not rospy.core.is_shutdown_requested():  # the plant goes on in real time while this node ends
                     raise
 
     def inject(self):
+        """Injects the fault and writes the report."""
         lasts = self.change.lasts if self.change else 0
         self.motor.begin(None if self.robot else self.stamp, lasts if self.robot and lasts else float("inf"))
         self.changes_until = time.monotonic() + lasts
-        self.add_to_report(said="", finished=Finished.of(self.runs))  # first: the fault may end this node
+        # The report is written first, because the fault may end this node.
+        self.add_to_report(said="", finished=Finished.of(self.runs))
         if not self.change:
             self.add_to_report(said=(self.do_stop if self.verb in STOPS else getattr(self, "do_" + self.verb))() or "")
 
@@ -292,15 +308,16 @@ class Injector:
         os.kill(self.pids[0], signal.SIGKILL)
 
     def do_stop(self):
+        """Stops the process of a node. The process continues after the time in STOPS."""
         block, key = LIMITS.get(self.what, OTHER_LIMIT)
         os.kill(self.pids[0], signal.SIGSTOP)
-        if self.verb != "hold":  # goes on even if this process has ended by then
+        if self.verb != "hold":  # a separate process sends SIGCONT even if this one has ended
             seconds = STOPS[self.verb] * self.configuration[block][key]
             subprocess.Popen(["sh", "-c", "sleep %g; kill -CONT %d" % (seconds, self.pids[0])], start_new_session=True)
 
     def do_lose(self):
-        """Kills a node where no roslaunch sees it, as on another machine: the other nodes must notice. roslaunch, which
-        has started all of them, sleeps until the experiment has ended."""
+        """Kills a node without roslaunch's notice, as if the node ran on another machine, so that the other nodes must
+        notice the loss. The roslaunch that started all nodes is stopped until the experiment has ended."""
         node, experiment = self.pids
         os.kill(os.getppid(), signal.SIGSTOP)
         os.kill(node, signal.SIGKILL)
@@ -308,6 +325,7 @@ class Injector:
             experiment, os.getppid())], start_new_session=True)
 
     def do_fill(self):
+        """Fills the disk of the run folder. Returns the error message of the full disk."""
         with open(os.path.join(self.runs, "filler"), "wb", buffering=0) as stream:
             try:
                 while True:
@@ -320,18 +338,19 @@ class Injector:
         return self.intruder.recv()
 
     def do_begin(self):
-        """A second experiment in the same folder."""
+        """Starts a second experiment in the same folder and returns its output."""
         return subprocess.run([find_program("run_experiment"), "--preset", "debug", "--out", self.runs],
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True).stdout
 
     def spin(self):
         rospy.spin()
         if self.done and self.robot:
-            # The last torque may take 50 ms. Only a joint beyond its limits is seen at once; everything else has to stay
-            # away for two time steps first.
+            # The last torque may arrive within 50 ms. A joint beyond its limits is visible at once. All other faults
+            # become visible after two time steps without a message.
             limit_s = 0.05 + (0.0 if self.verb == "exceed" else 2.0 * self.configuration["robot"]["dt"])
             self.add_to_report(motor=self.motor.verdict(limit_s, 0, 20))
-        elif self.done and self.real_time:  # in which a plant holds a torque for two periods
+        elif self.done and self.real_time:
+            # The plant holds a torque for two periods.
             acted = sorted(zip(self.stamps, (torque for _, torque in self.motor.acted)))
             self.add_to_report(motor=self.motor.verdict(0.0, 2, 3), acted=acted)
 

@@ -1,4 +1,4 @@
-# Runs the experiment of a case with its fault, then the same command without the fault, and tells what came of it.
+# Runs the experiment of a case with its fault, repeats the same command without the fault, and compares the outcome.
 # SPDX-License-Identifier: BSD-3-Clause
 import bisect
 import contextlib
@@ -21,10 +21,10 @@ from ddm_qa.run_comparison import Finished, differences, digest, digests, expect
 
 SEED, TRIALS = 1, 1
 NO_FAULT = "no fault"
-LIMIT_S = 120.0  # of a launch
-# Trainings last half a second, so that faults reach them even on fast processors. Limits are short, so that a silent node is
-# named soon. The controller waits longer than the simulator, which therefore is the one that reports a message lost
-# between them.
+LIMIT_S = 120.0  # time limit of a launch
+# A training takes at least half a second, so that a fault hits it even on a fast processor. Time limits are short, so
+# that a silent node is reported soon. The controller's limit is longer than the simulator's; hence the simulator
+# reports a message that is lost between them.
 CONFIG = """\
 training: {{max_iterations: 15000, function_tolerance: 0.0}}
 sim: {{watchdog: {0}}}
@@ -32,8 +32,8 @@ controller: {{timeout: {1}}}
 recorder: {{timeout: {0}}}
 experiment: {{timeout: {2}}}
 """
-SILENT_S = (5.0, 8.0, 11.0)  # without a sign of life
-REAL_TIME_DT_S = 0.05  # shorter waits than with the paper's 0.2 s
+SILENT_S = (5.0, 8.0, 11.0)  # time limits for silent nodes
+REAL_TIME_DT_S = 0.05  # shorter than the paper's 0.2 s, to save time
 REAL_TIME_CONFIG = "plant: {dt: %g}\n" % REAL_TIME_DT_S
 ROBOT_CONFIG = "robot: {position_limits: [[-1000.0, 1000.0]], speed_limit: [1000.0]}\n"
 LONG_PLANS = "mpc: {horizon: 200, num_starts: 1000, max_iterations: 1000000, function_tolerance: 0.0, time_budget: %g}\n"
@@ -41,8 +41,8 @@ CONFIGS = {"long plans": LONG_PLANS % 0.0, "long plans with a budget": LONG_PLAN
 CRASH = re.compile(r"exit code -(?!2\b|9\b|15\b)\d+|Traceback|terminate called|Segmentation fault")
 DISK_BYTES = 2 * 1024 * 1024
 COMPARED = [name for name in expected_files(TRIALS) if not name.endswith((".bag", "config.yaml"))]
-FEWEST_PAIRS = 5  # of image and torque in a bag, from which anything can be told
-# Kinds of records in a bag, by the field `op` of their headers.
+FEWEST_PAIRS = 5  # smallest number of pairs of image and torque in a bag that allows a verdict
+# Types of records in a bag: field `op` of their headers.
 RECORDS = {"header": 3, "index": 4, "chunk": 5, "chunk_info": 6, "connection": 7}
 VERSION_LINE = b"#ROSBAG V2.0\n"
 BAG, UNFINISHED = "new.bag", {"unfinished bag": "new.bag.active", "unfinished trial": "trial_001/trial.bag.active"}
@@ -50,7 +50,7 @@ BAG, UNFINISHED = "new.bag", {"unfinished bag": "new.bag.active", "unfinished tr
 
 @contextlib.contextmanager
 def small_disk(folder):
-    """A file system of its own for a folder, which can be full or read-only. Needs root."""
+    """Context that mounts a small file system on a folder, for tests with a full or read-only disk. Needs root."""
     os.makedirs(folder)
     subprocess.run(["mount", "-t", "tmpfs", "-o", "size=%d" % DISK_BYTES, "none", folder], check=True)
     try:
@@ -66,8 +66,8 @@ def write(path, content):
 
 
 def find_place(data, name):
-    """(begin, end) of a place in a file: of its head, end or last digit, or of a bag's first record of a kind."""
-    digit = data.rfind(b",") - 1  # the last one of a table: its last column is text
+    """(begin, end) of a place in a file: its head, its end, its last digit, or the first record of a type in a bag."""
+    digit = data.rfind(b",") - 1  # last digit before the last column, which is text
     places = {"": (0, len(data)), "head": (0, 8), "end": (len(data) - 16, len(data)), "digit": (digit, digit + 1),
               "version": (0, len(VERSION_LINE))}
     begin = len(VERSION_LINE)
@@ -83,7 +83,7 @@ def find_place(data, name):
 
 
 def damage(fault, path):
-    """Does to a file what the fault says, `cut|flip|remove [PLACE of] FILE`."""
+    """Damages a file. fault: `cut|flip|remove [PLACE of] FILE`."""
     verb, *place = fault.split()[:-1]
     place = place[0] if place else ""
     data = read_bytes(path)
@@ -93,28 +93,28 @@ def damage(fault, path):
     elif verb == "cut":
         write(path, data[:middle])
     else:
-        bit = 0x01 if place == "digit" else 0x80  # which makes another digit of one
+        bit = 0x01 if place == "digit" else 0x80  # 0x01 turns a digit into another digit
         write(path, data[:middle] + bytes([data[middle] ^ bit]) + data[middle + 1:])
 
 
 class FaultBench:
-    """Runs cases in folders of their own under `out`:
+    """Runs cases in separate folders below `out`:
 
-      reference/, begun/   the undisturbed experiment, and how it was when its first trial was finished
+      reference/, begun/   the undisturbed experiment, and a copy of its state after the first trial
       CASE/run             the experiment of a case; CASE/ros: logs of its nodes
-      logs/CASE.txt        what its launches said
+      logs/CASE.txt        output of the launches of a case
     """
 
     def __init__(self, out, patience=1.0):
-        """patience: what all time limits are multiplied by, but a robot's: its motors must stop in time anywhere."""
+        """patience: factor for all time limits, apart from those of a robot, whose motors must always stop in time."""
         self.out, self.limit_s = out, LIMIT_S * patience
         self.config = CONFIG.format(*(limit * patience for limit in SILENT_S))
         self.reference, self.begun = os.path.join(out, "reference", "run"), os.path.join(out, "begun")
-        self.launches = set()  # that run
+        self.launches = set()  # running launches
         os.makedirs(os.path.join(out, "logs"), exist_ok=True)
 
     def make_reference(self):
-        """Raises Failure if even the undisturbed experiment does not finish."""
+        """Runs the undisturbed experiment. Raises Failure if it does not finish."""
         for folder in (os.path.dirname(self.reference), self.begun):
             shutil.rmtree(folder, ignore_errors=True)
         output = self.launch_experiment(self.reference, self.reference)
@@ -128,16 +128,16 @@ class FaultBench:
         write(os.path.join(self.begun, "trials.csv"), b"".join(rows[:2]))
 
     def launch_experiment(self, beside, folder, launch_file="experiment.launch", config="", **more):
-        """Without a fault, in lock-step, unless `more` arguments say otherwise. beside: the logs of its nodes go next to
-        this folder. config: more of it."""
+        """Runs an experiment without a fault and in lock-step, unless `more` arguments say otherwise. beside: folder
+        next to which the logs are written. config: additional configuration. Returns the output."""
         path = os.path.join(os.path.dirname(beside), "config.yaml")
         os.makedirs(os.path.dirname(path), exist_ok=True)
-        write_file(path, self.config + config)  # whole, since several cases may read it
+        write_file(path, self.config + config)  # atomic, because several cases may read the file
         values = dict({"preset": "debug", "seed": SEED, "trials": TRIALS, "runs": folder, "config": path}, **more)
         return self.launch(beside, launch_file, ["%s:=%s" % item for item in values.items()])
 
     def launch(self, beside, launch_file, arguments):
-        """Runs a launch to its end. Returns its output; raises TimeoutError if it does not end."""
+        """Runs a launch to its end. Returns its output. Raises TimeoutError if the launch does not end."""
         with start_roslaunch(os.path.join(os.path.dirname(beside), "ros"), launch_file, *arguments,
                              options=["--sigint-timeout=5", "--sigterm-timeout=2"]) as launch:
             self.launches.add(launch)
@@ -146,7 +146,7 @@ class FaultBench:
         return launch.output
 
     def run(self, case):
-        """Returns what was observed, in the words of the case's expected outcome."""
+        """Runs a case and returns the observed outcome, in the same words as the expected outcome."""
         name = case.name.replace(" ", "_")
         folder = os.path.join(self.out, name, "run")
         shutil.rmtree(os.path.dirname(folder), ignore_errors=True)
@@ -158,7 +158,8 @@ class FaultBench:
             except TimeoutError as error:
                 log.write(str(error))
                 observed = "hung"
-            except (OSError, ValueError, IndexError, KeyError, rosbag.ROSBagException) as error:  # of files that it has left
+            # One of the files that the experiment has left is unreadable.
+            except (OSError, ValueError, IndexError, KeyError, rosbag.ROSBagException) as error:
                 log.write(traceback.format_exc())
                 observed = "unreadable: %s" % error
         if observed == case.expected:
@@ -167,7 +168,8 @@ class FaultBench:
 
 
 class CaseRun:
-    """A case that is run. Each word of an expected outcome is a method, which returns the word, or what was seen instead."""
+    """A running case. Each word of an expected outcome is a method, which returns the same word or a description of the
+    deviation."""
 
     def __init__(self, bench, case, folder, log):
         self.bench, self.case, self.folder, self.log = bench, case, folder, log
@@ -179,6 +181,7 @@ class CaseRun:
         return output
 
     def observed(self):
+        """Runs the case and returns the observed outcome."""
         self.output = self.disturb()
         if self.report is None:
             return "not injected"
@@ -186,33 +189,35 @@ class CaseRun:
         return ", ".join(facts + (["crashed"] if CRASH.search(self.output) else []))
 
     def finished(self):
-        """summary.yaml says so. `ended`: the launch ended by itself, without a verdict."""
+        """Whether summary.yaml says that the experiment is finished. `ended`: the launch ended by itself and left no
+        verdict."""
         return "finished" if is_finished(self.folder) else "ended"
 
     ended = finished
 
     def named(self):
-        """The output has the case's words."""
+        """Whether the output contains all words of the case."""
         missing = [word for word in self.case.words if word not in self.output]
         return "not named: " + " | ".join(missing) if missing else "named"
 
     def undamaged(self):
-        """What was finished before the fault, at least one trial, is there, byte by byte, after the fault and after
-        resuming."""
+        """Whether all files that were finished before the fault, at least one trial, still have the same bytes after
+        the fault and after resuming."""
         damaged = self.resume() + self.before.lost(self.folder)
-        if not self.case.phase.endswith((REAL_TIME, ON_A_ROBOT)):  # in which no two experiments are equal
+        if not self.case.phase.endswith((REAL_TIME, ON_A_ROBOT)):  # two such experiments always differ
             damaged += differences(self.bench.reference, self.folder, [name for name in COMPARED if name in self.before.files])
         if damaged:
             return "damaged: " + " ".join(sorted(set(damaged)))
         return "undamaged" if self.before.files else "nothing to compare"
 
     def resumes(self):
-        """The same command finishes the experiment."""
+        """Whether the same command finishes the experiment."""
         self.resume()
         return "resumes" if is_finished(self.folder) else "does not resume"
 
     def resume(self):
-        """Once: takes the fault away and runs the same command again. Returns the finished files that were lost before."""
+        """Removes the fault and runs the same command again; further calls do nothing. Returns the finished files that
+        were lost before."""
         if self.resumed:
             return []
         self.resumed = True
@@ -223,13 +228,14 @@ class CaseRun:
         return lost
 
     def equal(self):
-        """All files but bags are those of the undisturbed experiment, apart from times."""
+        """Whether all files except bags equal those of the undisturbed experiment, apart from times."""
         found = differences(self.bench.reference, self.folder, COMPARED) if is_finished(self.folder) else ["no verdict"]
         return "differs: " + " ".join(found) if found else "equal"
 
 
 class Live(CaseRun):
-    """The fault comes while the experiment runs: fault_injector causes it, and reports what it has seen."""
+    """A case whose fault comes while the experiment runs. fault_injector injects the fault and reports its
+    observations."""
 
     def launch(self, fault):
         phase, arguments, config = self.case.phase, {}, CONFIGS.get(fault, "")
@@ -243,6 +249,7 @@ class Live(CaseRun):
         return self.bench.launch_experiment(self.folder, self.folder, config=config, **arguments)
 
     def disturb(self):
+        """Runs the experiment with the fault. Returns its output, with that of fault_injector."""
         self.report_path = os.path.join(os.path.dirname(self.folder), "report.json")
         output = self.launch_and_log(self.case.fault)
         if self.case.fault not in CONFIGS:
@@ -259,18 +266,19 @@ class Live(CaseRun):
             os.remove(filler)
 
     def zero(self):
-        """In real time, from the third period after the last torque on, no torque acts."""
+        """Whether no torque acts after the fault. In real time, the two periods after the last torque are excluded."""
         return self.report.get("motor", "the motor was not watched")
 
     def in_time(self):
-        """Plans take less than a time step."""
+        """Whether plans take less than a time step."""
         header, *rows = read_rows(self.folder, "trials.csv")
         slowest_ms = max(float(row[header.index("plan_ms_median")]) for row in rows)
         return "in time" if slowest_ms < 1e3 * REAL_TIME_DT_S else "plans took %g ms" % slowest_ms
 
     def learned_what_acted(self):
-        """In the bag of the trial, an image has the torque that acted after it or none, and some have none."""
-        acted = self.report["acted"]  # (stamp of an image [ns], torque that acted before it) of all frames, in order
+        """Whether each image in the trial's bag has either the torque that acted after it or none, and some images have
+        none."""
+        acted = self.report["acted"]  # (stamp of an image [ns], torque that acted before it) of each frame, in order
         stamps, images, torques = [stamp for stamp, _ in acted], set(), {}
         with rosbag.Bag(os.path.join(self.folder, "trial_001", "trial.bag")) as bag:
             for topic, message, _ in bag.read_messages(["camera/image_raw", "torque"]):
@@ -289,14 +297,16 @@ class Live(CaseRun):
 
 
 class AtRest(CaseRun):
-    """A command is given a run folder that is damaged, or belongs to another experiment, or must not be written: a copy of
-    an experiment that is not finished. What must not run on such a folder is the experiment itself, or a short recording."""
+    """A case whose fault is in the run folder before the start: a file is damaged, the folder belongs to another
+    experiment, or it cannot be written. The folder is a copy of an unfinished experiment. The tested command is the
+    experiment or a short recording."""
 
     def disturb(self):
+        """Prepares the run folder with the fault and runs the command. Returns its output."""
         fault, folder, bench = self.case.fault, self.folder, self.bench
         shutil.copytree(bench.begun, folder, dirs_exist_ok=True)
         self.before, self.undo = Finished.of(folder), lambda: None
-        if fault in UNFINISHED:  # what is left of a bag whose recorder was killed
+        if fault in UNFINISHED:  # the rest of a bag whose recorder was killed
             content, path = read_bytes(bench.begun, "trial_000", "trial.bag"), os.path.join(folder, UNFINISHED[fault])
             self.half = content[:len(content) // 2]
             write(path, self.half)
@@ -316,7 +326,7 @@ class AtRest(CaseRun):
     def launch(self, fault):
         bench, folder = self.bench, self.folder
         if not self.case.expected.startswith("refused"):
-            # logs go elsewhere: the folder may be read-only
+            # The logs go into another folder, because this one may be read-only.
             return bench.launch_experiment(bench.reference, folder, seed=SEED + (fault == "other seed"))
         arguments = ["preset:=debug", "num_steps:=10", "bag:=" + os.path.join(folder, BAG)]
         if self.case.fault.endswith("model.ddm"):
@@ -324,25 +334,25 @@ class AtRest(CaseRun):
         return bench.launch(folder, "record.launch", arguments)
 
     def bags(self):
-        """Names of the new bags, complete or not."""
+        """Names of new bags, complete or not."""
         return {name for name in os.listdir(self.folder) if name.startswith(BAG)}
 
     def refused(self):
-        """The launch left no bag."""
+        """Whether the launch left no bag."""
         return "acted" if self.bags() - set(self.there) else "refused"
 
     def acts_when_restored(self):
-        """With the fault taken away, the same launch leaves a bag."""
+        """Whether the same launch leaves a bag after the fault is removed."""
         self.undo()
         self.launch_and_log(NO_FAULT)
         return "acts when restored" if self.bags() == {BAG} else "does not act when restored"
 
     def unchanged(self):
-        """The command left every byte of the run folder."""
+        """Whether the command left all bytes of the run folder unchanged."""
         now = digests(self.folder)
         changed = sorted(name for name in set(self.there) | set(now) if self.there.get(name) != now.get(name))
         return "changed: " + " ".join(changed) if changed else "unchanged"
 
     def kept(self):
-        """A bag that was not completed is still there, byte by byte."""
+        """Whether the content of an incomplete bag still exists in a file."""
         return "kept" if digest(self.half) in digests(self.folder).values() else "not kept"

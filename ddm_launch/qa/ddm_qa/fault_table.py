@@ -1,4 +1,4 @@
-# The fault table: every case of fault_cases.py, several at a time, as DIR/faults.csv.
+# fault_table: runs all cases of fault_cases.py, several at a time, and writes DIR/faults.csv.
 # SPDX-License-Identifier: BSD-3-Clause
 from concurrent.futures import ThreadPoolExecutor, as_completed
 import os
@@ -43,7 +43,7 @@ def run(options):
                 observed[case.name] = result
                 if result != case.expected:
                     tqdm.write("failed: %s: expected '%s', got '%s'" % (case.name, case.expected, result))
-        except BaseException:  # interrupted
+        except BaseException:  # the user interrupts the program
             for future in futures:
                 future.cancel()
             for launch in list(bench.launches):

@@ -1,4 +1,4 @@
-# Programs whose output is read while they run or at their end, and launches with masters of their own. All have a limit.
+# Runs programs and launches with time limits, and reads their output while they run or at their end.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import random
@@ -9,11 +9,11 @@ import threading
 import urllib.parse
 import xmlrpc.client
 
-PORTS = range(12000, 32768)  # Linux gives none of them to programs that take any port
+PORTS = range(12000, 32768)  # below Linux's range of ephemeral ports
 
 
 def free_port():
-    """A port for a master. Nodes that start before the master do not take it."""
+    """Returns a free port for a master. Processes that start before the master do not get this port from Linux."""
     while True:
         port = random.SystemRandom().choice(PORTS)
         with socket.socket() as sock:
@@ -21,17 +21,18 @@ def free_port():
                 sock.bind(("localhost", port))
                 return port
             except OSError:
-                pass  # in use
+                pass  # the port is in use
 
 
 def line_by_line():
-    """The environment in which ROS programs write each line at once, into a pipe too."""
+    """Environment in which ROS programs write each line immediately, also into a pipe."""
     return dict(os.environ, PYTHONUNBUFFERED="1", ROSCONSOLE_STDOUT_LINE_BUFFERED="1")
 
 
 def on_this_machine(**variables):
-    """The environment for a ROS master and nodes that only this machine can reach: ROS_IP=127.0.0.1. An environment that names
-    an address (ROS_IP, ROS_HOSTNAME) or a master on another machine stays as it is. variables: of the environment."""
+    """Environment for a ROS master and nodes that only this machine can reach (ROS_IP=127.0.0.1). Stays unchanged if it
+    names an address (ROS_IP, ROS_HOSTNAME) or a master on another machine. variables: additional environment
+    variables."""
     environment = dict(line_by_line(), **variables)
     host = urllib.parse.urlparse(environment.get("ROS_MASTER_URI", "http://localhost")).hostname
     if not (environment.get("ROS_IP") or environment.get("ROS_HOSTNAME")) and host in ("localhost", "127.0.0.1"):
@@ -40,10 +41,11 @@ def on_this_machine(**variables):
 
 
 class Process:
-    """A program whose output, stdout and stderr together, is read while it runs. As a context it ends the program."""
+    """A program whose output (stdout and stderr together) can be read while it runs. As a context manager it ends the
+    program."""
 
     def __init__(self, command, environment=None, folder=None, output=subprocess.PIPE):
-        """output: a terminal that shows the output; then it is not read here."""
+        """output: file descriptor of a terminal that shows the output. The output is then not available here."""
         self._changed = threading.Condition()
         self._text, self._ended = "", False
         self._process = subprocess.Popen(
@@ -78,7 +80,8 @@ class Process:
         return self._text
 
     def waitForText(self, text, limit_s):
-        """Returns as soon as the output holds this text; fails if the program ends or time runs out before."""
+        """Returns as soon as the output contains this text. Raises TimeoutError if the program ends or the time is over
+        before."""
         with self._changed:
             self._changed.wait_for(lambda: text in self._text or self._ended, limit_s)
         if text not in self._text:
@@ -86,7 +89,7 @@ class Process:
             raise TimeoutError("'%s' did not come within %g s:\n%s" % (text, limit_s, self.output))
 
     def waitForEnd(self, limit_s):
-        """The exit code."""
+        """Waits for the end and returns the exit code. Raises TimeoutError if the program does not end in time."""
         try:
             code = self._process.wait(limit_s)
         except subprocess.TimeoutExpired:
@@ -100,10 +103,10 @@ class Process:
         return self._process.poll() is None
 
     def send(self, signal_number):
-        self._process.send_signal(signal_number)  # nothing if it has ended
+        self._process.send_signal(signal_number)  # no effect if the program has ended
 
     def stop(self, limit_s=20.0):
-        """Ends the program, the hard way if need be."""
+        """Ends the program by SIGINT, and by SIGKILL if it does not end within the limit."""
         self.send(signal.SIGINT)
         try:
             self._process.wait(limit_s)
@@ -113,8 +116,8 @@ class Process:
 
 
 def start_roslaunch(log_folder, *arguments, port=None, folder=None, options=(), variables=None):
-    """Starts `roslaunch ddm_launch ...` with a master of its own; port 0 joins the master that runs already.
-    options: of roslaunch itself. variables: of its environment."""
+    """Starts `roslaunch ddm_launch ...` with its own master. Port 0 uses the master that is already running. options:
+    options of roslaunch. variables: environment variables."""
     port = free_port() if port is None else port
     own_master = {"ROS_MASTER_URI": "http://localhost:%d" % port} if port else {}
     return Process(["roslaunch", *options, *(["-p", port] if port else []), "ddm_launch", *arguments],
@@ -122,7 +125,7 @@ def start_roslaunch(log_folder, *arguments, port=None, folder=None, options=(), 
 
 
 def pid_of(master, node):
-    """Process of a node on this machine, or of `master` itself. master: a rosgraph.Master."""
+    """Process id of a node on this machine, or of the master if node is `master`. master: a rosgraph.Master."""
     if node == "master":
         return master.getPid()
     return xmlrpc.client.ServerProxy(master.lookupNode("/" + node.lstrip("/"))).getPid(master.caller_id)[2]

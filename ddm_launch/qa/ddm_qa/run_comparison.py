@@ -1,4 +1,4 @@
-# What must be equal in two runs of one experiment, and what must not be lost of one.
+# Compares two runs of the same experiment, and detects lost files.
 # SPDX-License-Identifier: BSD-3-Clause
 import collections
 import csv
@@ -12,11 +12,11 @@ from ddm_launch.run_folder import num_finished
 COLUMNS = ["seed", "trial", "frames", "success", "success_strict", "final_error", "v_r", "v_p", "train_s",
            "train_evaluations", "plan_ms_median", "plan_ms_p99", "version", "return"]
 TIME_COLUMNS = ["train_s", "plan_ms_median", "plan_ms_p99"]
-CHECKSUMS = ".trials.crc32"  # of trials.csv with its times
+CHECKSUMS = ".trials.crc32"  # checksums of trials.csv, including its times
 
 
 def expected_files(num_trials):
-    """Every file of a finished experiment with this many epsilon-greedy trials."""
+    """Names of all files of a finished experiment with this number of epsilon-greedy trials."""
     files = [CHECKSUMS, "config.yaml", "summary.yaml", "trials.csv"]
     for k in range(num_trials + 1):
         files += ["trial_%03d/%s" % (k, name)
@@ -26,7 +26,7 @@ def expected_files(num_trials):
 
 
 def files_in(folder):
-    """Paths of all files, relative to the folder."""
+    """Paths of all files in a folder, relative to the folder."""
     found = []
     for parent, _, names in os.walk(folder):
         found += [os.path.relpath(os.path.join(parent, name), folder) for name in names]
@@ -44,13 +44,14 @@ def read_yaml(*path):
 
 
 def read_rows(*path):
-    """The rows of a CSV file as lists of texts, the header first."""
+    """Rows of a CSV file as lists of texts, starting with the header."""
     with open(os.path.join(*path), newline="") as stream:
         return list(csv.reader(stream))
 
 
 def comparable(folder, name):
-    """What must be equal in two runs of one experiment: a file without times, places and versions of rows."""
+    """Content of a file without times, paths and versions. The rest must be equal in two runs of the same
+    experiment."""
     if name == "trials.csv":
         keep = [k for k, column in enumerate(COLUMNS) if column not in TIME_COLUMNS + ["version"]]
         return [[row[k] for k in keep] for row in read_rows(folder, name)]
@@ -67,7 +68,7 @@ def comparable(folder, name):
 
 
 def differences(first, second, names):
-    """Those of the files that are not equal in two runs."""
+    """Names of the files that differ between two runs."""
     return [name for name in names if comparable(first, name) != comparable(second, name)]
 
 
@@ -76,19 +77,19 @@ def digest(content):
 
 
 def digests(folder):
-    """{name: digest} of all files."""
+    """{name: digest} of all files in a folder."""
     return {name: digest(read_bytes(folder, name)) for name in files_in(folder)}
 
 
 def head_of_table(folder, num_rows):
-    """Digest of the header and the first rows of the table of trials; None if there is none."""
+    """Digest of the header and the first rows of trials.csv; None if the file does not exist."""
     if not os.path.exists(os.path.join(folder, "trials.csv")):
         return None
     return digest(b"".join(read_bytes(folder, "trials.csv").splitlines(keepends=True)[:num_rows + 1]))
 
 
 class Finished(collections.namedtuple("Finished", "num_trials files")):
-    """All files of finished trials, and their rows in the table of trials."""
+    """Digests of all files of finished trials, and of their rows in trials.csv."""
 
     @classmethod
     def of(cls, folder):
@@ -98,6 +99,6 @@ class Finished(collections.namedtuple("Finished", "num_trials files")):
         return cls(count, dict(files, **{"trials.csv": head_of_table(folder, count)}) if count else {})
 
     def lost(self, folder):
-        """Names of what is not there any more, or not as it was."""
+        """Names of files that are missing now or have changed."""
         now = dict(digests(folder), **{"trials.csv": head_of_table(folder, self.num_trials)})
         return sorted(name for name, value in self.files.items() if now.get(name) != value)

@@ -1,4 +1,4 @@
-# soak: long experiments of the real nodes, and what becomes of each process and of each frame in them.
+# soak: runs long experiments with the real nodes, and checks the resources of each process and the loss of frames.
 # SPDX-License-Identifier: BSD-3-Clause
 import collections
 import os
@@ -16,7 +16,7 @@ from ddm_launch.run_folder import is_finished, num_finished, read_setting, read_
 from ddm_launch.tables import write_csv
 from ddm_qa.processes import free_port, pid_of, start_roslaunch
 
-CALL_LIMIT_S = 30.0  # of a question to a master or node
+CALL_LIMIT_S = 30.0  # time limit of a call to a master or node
 TRIAL_LIMIT_S = 300.0
 LONG_TRAINING = "training: {max_iterations: 1000, function_tolerance: 1.0e-12}\n"
 CONFIG = """\
@@ -24,16 +24,18 @@ image: {size: %d}
 model: {pca_dim: 5, encoder_widths: [], predictor_widths: []}
 trial: {num_steps: %d}
 """
-GROWTH = 0.05  # of resident memory, since the first tenth of the trials: trial 30 of 300
-IMAGES = 2.0  # that model_node may keep of each frame of a trial: one, and what else it needs
+GROWTH = 0.05  # largest growth of resident memory after the first tenth of the trials (trial 30 of 300)
+IMAGES = 2.0  # largest memory of model_node per frame [images]: one image, and other data of the frame
 
-# trials, seconds: after so many trials after the random one, or seconds after the first trial began, the run ends. One of
-# both is None. image_bytes: of an image, if the images that model_node keeps may make it grow.
+# trials, seconds: the run ends after this number of trials after the random one, or after this time since the first
+# trial began; one of the two is None. image_bytes: size of an image if the stored images of model_node may increase its
+# memory, else None.
 Soak = collections.namedtuple("Soak", "name config arguments trials seconds image_bytes")
-# Of a node after a trial. time_s: since the first trial began.
+# Measurement of a node after a trial. time_s: time since the first trial began.
 Sample = collections.namedtuple("Sample", "run node trial time_s rss_kb open_files")
-# Of a trial or of its evaluation. A frame is lost if the camera did not show it, if it did not arrive, or if no torque
-# answered it: all leave a gap between the times of the frames that were answered, which are dt apart.
+# Frames of a trial or of its evaluation. A frame is lost if the camera did not publish its image, if the image did not
+# arrive, or if no torque answered it. Each loss leaves a gap between the times of the answered frames, which are
+# otherwise dt apart.
 Frames = collections.namedtuple("Frames", "run trial part due answered lost")
 Target = collections.namedtuple("Target", "run target measured passed")
 
@@ -50,7 +52,7 @@ Exit code: 0 all passed, 1 not, 2 bad options."""
 
 
 def judge(soak, samples, frames):
-    """All targets of a run."""
+    """Judges a run. Returns its Targets."""
     last = samples[-1].trial
     tenth = max(1, last // 10)
     for node in sorted({sample.node for sample in samples}):
@@ -75,7 +77,7 @@ def judge(soak, samples, frames):
 
 
 def answered_times(bag_path):
-    """Times of the images in a bag that have a torque [s]."""
+    """Time stamps of the images in a bag that have a torque [s]."""
     images, torques = set(), set()
     with rosbag.Bag(bag_path) as bag:
         for topic, message, _ in bag.read_messages(["camera/image_raw", "torque"]):
@@ -84,7 +86,7 @@ def answered_times(bag_path):
 
 
 def count_frames(run, folder, num_trials):
-    """Frames of the first trials of a run folder and of their evaluations, which are not recorded."""
+    """Counts the frames of the first trials of a run folder and of their evaluations, which are not recorded."""
     dt = float(read_setting(folder, "plant", "dt", "time between two images"))
     num_steps = int(read_setting(folder, "trial", "num_steps", "frames of a trial"))
     for trial in range(num_trials):
@@ -95,7 +97,7 @@ def count_frames(run, folder, num_trials):
 
 
 def look(soak, processes, trial, seconds):
-    """A Sample of each process."""
+    """Returns a Sample of each process."""
     for name, pid in processes.items():
         with open("/proc/%d/status" % pid) as stream:
             rss_kb = int(re.search(r"VmRSS:\s+(\d+) kB", stream.read()).group(1))
@@ -103,11 +105,12 @@ def look(soak, processes, trial, seconds):
 
 
 def follow(soak, launch, master, run_folder):
-    """The samples of a launch until its end, or until its time is over."""
+    """Takes samples of a launch until the launch ends or its time is over. Raises Failure if a trial takes too long or
+    the launch ends early."""
     begin, news, count, processes, samples = None, time.monotonic(), 0, {}, []
     while launch.isRunning() and (soak.seconds is None or begin is None or time.monotonic() - begin < soak.seconds):
         time.sleep(0.02)
-        if begin is None and os.path.isdir(os.path.join(run_folder, "trial_000")):  # all nodes are there, and connected
+        if begin is None and os.path.isdir(os.path.join(run_folder, "trial_000")):  # all nodes exist and are connected
             begin = news = time.monotonic()
             nodes = sorted({name for topics in master.getSystemState() for _, names in topics for name in names})
             processes = {name.lstrip("/"): pid_of(master, name) for name in nodes + ["master"]}
@@ -123,14 +126,15 @@ def follow(soak, launch, master, run_folder):
 
 
 def make(soak, out):
-    """(samples, frames) of a run in OUT/NAME: run, the folder of the experiment; ros, logs of its nodes; output.txt."""
+    """Runs a Soak in OUT/NAME and returns (samples, frames). run: folder of the experiment. ros: logs of its nodes.
+    output.txt: output of the launch."""
     folder, port = os.path.join(out, soak.name), free_port()
     config, run_folder = os.path.join(folder, "config.yaml"), os.path.join(folder, "run")
     shutil.rmtree(folder, ignore_errors=True)
     os.makedirs(folder)
     with open(config, "w") as stream:
         stream.write(soak.config)
-    # One more trial follows, so that the nodes are still there after the last one that is judged.
+    # Runs one trial more than judged, so that the nodes still exist after the last judged trial.
     launch = start_roslaunch(os.path.join(folder, "ros"), "experiment.launch", "preset:=debug", "seed:=1", "config:=" + config,
                              "trials:=%d" % (soak.trials + 1 if soak.trials else 999), "runs:=" + run_folder, *soak.arguments,
                              port=port)
@@ -147,8 +151,9 @@ def make(soak, out):
 
 def run(options):
     out, tables = os.path.abspath(options.out), ([], [], [])
-    # The images that model_node keeps make its memory grow: lockstep, with images of the usual size, says by how much;
-    # real_time has the smallest images, which leave only what else grows. The camera's own are as large as ever in both.
+    # model_node stores all images, so its memory grows. The run lockstep has images of the usual size and measures this
+    # growth; the run real_time has the smallest images, so that other growth becomes visible. The camera's own images
+    # have the usual size in both runs.
     for soak in tqdm((Soak("lockstep", CONFIG % (51, 20), [], options.trials, None, 51 ** 2),
                       Soak("real_time", CONFIG % (5, options.steps) + LONG_TRAINING, ["real_time:=true"], None,
                            60.0 * options.minutes, None)), unit="run", disable=None):

@@ -1,4 +1,4 @@
-# Means over experiments, with their standard errors, confidence intervals and tests.
+# Computes means over experiments, with standard errors, confidence intervals and tests.
 # SPDX-License-Identifier: BSD-3-Clause
 import math
 import statistics
@@ -8,11 +8,12 @@ import pandas
 
 
 def success_rates(trials):
-    """The rate of success over seeds at each number of frames, of a table of read_trials().
+    """Success rate over the seeds at each number of frames. trials: table of read_trials().
 
-    Columns rate, se, runs, and low and high, the ends of Wilson's interval; the index is frames. Trials whose success is not
-    known do not count. The standard error of a rate p over n runs is sqrt(p (1 - p) / (n - 1)), as in the paper's Fig. 8; 0
-    for a single run.
+    Returns a table with the index frames and the columns rate, se, runs, low and high (ends of Wilson's interval).
+    Trials with unknown success are excluded. The standard error of a rate p over n experiments is
+
+      se = sqrt(p (1 - p) / (n - 1)),   as in the paper's Fig. 8, and 0 for a single experiment
     """
     groups = trials.dropna(subset=["success"]).groupby("frames").success
     rate, runs = groups.mean(), groups.size()
@@ -22,12 +23,12 @@ def success_rates(trials):
 
 
 def wilson_interval(rate, n, confidence=0.95):
-    """(low, high): the rates p that a rate p_hat over n independent runs does not speak against.
+    """Wilson's confidence interval (low, high) for a rate p_hat over n independent experiments: all rates p with
 
-      |p_hat - p| <= z sqrt(p (1 - p) / n),   solved for p; z: quantile of N(0, 1), 1.96 at 95 %
+      |p_hat - p| <= z sqrt(p (1 - p) / n),   z: quantile of N(0, 1), 1.96 at 95 %
 
-    E. B. Wilson, "Probable inference, the law of succession, and statistical inference", J. Am. Stat. Assoc. 22
-    (1927). Unlike the standard error it does not shrink to a point where all runs succeed.
+    E. B. Wilson, "Probable inference, the law of succession, and statistical inference", J. Am. Stat. Assoc. 22 (1927).
+    Unlike the standard error, the interval keeps a positive width if all experiments succeed.
     """
     z = statistics.NormalDist().inv_cdf(0.5 + 0.5 * confidence)
     centre = (rate + z * z / (2.0 * n)) / (1.0 + z * z / n)
@@ -36,15 +37,17 @@ def wilson_interval(rate, n, confidence=0.95):
 
 
 def mean_and_error(values):
-    """Mean of these numbers and its standard error, s / sqrt(n) with the sample's s; 0 for a single number."""
+    """Mean of the values and its standard error s / sqrt(n), where s is the sample standard deviation. The error of a
+    single value is 0."""
     mean = math.fsum(values) / len(values)
     return mean, statistics.stdev(values, mean) / math.sqrt(len(values)) if len(values) > 1 else 0.0
 
 
 def sign_test(differences):
-    """Exact two-sided p-value of paired differences whose signs would be as likely + as -; zeros do not count.
+    """Exact two-sided p-value of the hypothesis that paired differences are positive and negative with equal
+    probability. Zeros are excluded.
 
-    Of successes (1) and failures (0) it is McNemar's exact test. W. J. Conover, "Practical Nonparametric Statistics"
+    For successes (1) and failures (0) this is McNemar's exact test. W. J. Conover, "Practical Nonparametric Statistics"
     (1999), sec. 3.4 and 3.5.
     """
     more, fewer = sum(d > 0 for d in differences), sum(d < 0 for d in differences)
@@ -53,10 +56,11 @@ def sign_test(differences):
 
 
 def holm(p_values):
-    """p-values of several tests at once, so that at 5 % the chance of any false finding is 5 % at most.
+    """Adjusts p-values of several tests, so that the probability of at least one false finding is at most the level of
+    the test.
 
-    S. Holm, "A simple sequentially rejective multiple test procedure", Scand. J. Stat. 6 (1979): the i-th smallest of
-    m (i = 0, 1, ...) times m - i, and none below one that is smaller itself.
+    The i-th smallest of m p-values (i = 0, 1, ...) is multiplied by m - i; no adjusted p-value is smaller than that of
+    a smaller p-value. S. Holm, "A simple sequentially rejective multiple test procedure", Scand. J. Stat. 6 (1979).
     """
     adjusted, largest = [0.0] * len(p_values), 0.0
     for rank, index in enumerate(sorted(range(len(p_values)), key=p_values.__getitem__)):

@@ -1,4 +1,4 @@
-# What the programs of ddm_launch share: failures, signals, arguments, and the paths of other programs and files.
+# Functions that the programs of ddm_launch share: failures, signals, arguments, and paths of programs and files.
 # SPDX-License-Identifier: BSD-3-Clause
 import argparse
 import contextlib
@@ -14,7 +14,8 @@ SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 class Interrupted(BaseException):
-    """A signal asks to end. Not an Exception: nothing but the program itself may handle it."""
+    """A signal has asked the program to end. Derives from BaseException, so that no handler for Exception catches
+    it."""
 
     def __init__(self, number):
         super().__init__("interrupted by %s" % signal.Signals(number).name)
@@ -23,8 +24,8 @@ class Interrupted(BaseException):
 
 @contextlib.contextmanager
 def raised_as_exception():
-    """In this context the first signal raises Interrupted in the main thread. Later signals are ignored, so that they do
-    not interrupt the clean-up."""
+    """Context in which the first signal raises Interrupted in the main thread. Later signals are ignored and do not
+    interrupt the clean-up."""
     def on_signal(number, _):
         for each in SIGNALS:
             signal.signal(each, signal.SIG_IGN)
@@ -32,7 +33,7 @@ def raised_as_exception():
 
     before = {number: signal.getsignal(number) for number in SIGNALS}
     for number in SIGNALS:
-        if number != signal.SIGHUP or before[number] != signal.SIG_IGN:  # under nohup a lost terminal is not a reason
+        if number != signal.SIGHUP or before[number] != signal.SIG_IGN:  # nohup ignores SIGHUP
             signal.signal(number, on_signal)
     try:
         yield
@@ -43,7 +44,7 @@ def raised_as_exception():
 
 @contextlib.contextmanager
 def held_back():
-    """In this context signals wait. For steps that must not be interrupted between them."""
+    """Context that delays signals, for steps that must be completed together."""
     before = signal.pthread_sigmask(signal.SIG_BLOCK, SIGNALS)
     try:
         yield
@@ -52,13 +53,14 @@ def held_back():
 
 
 class Failure(Exception):
-    """A program cannot go on. The message names the file or value at fault and the remedy."""
+    """The program cannot continue. The message names the file or value that causes the failure, and the remedy."""
 
     exit_code = 1
 
 
 def run_program(name, work):
-    """Calls work() and returns its exit code. A failure or a signal is reported on stderr: 1, or 128 + the signal."""
+    """Calls work() and returns its exit code. Prints a failure or signal on stderr and returns 1, or 128 + the signal's
+    number."""
     try:
         with raised_as_exception():
             return work() or 0
@@ -71,24 +73,25 @@ def run_program(name, work):
 
 
 class Parser(argparse.ArgumentParser):
-    """Reads `--out=~/x` and `'~/x'` as a shell reads `~/x`."""
+    """Parser that expands `~` in `--out=~/x` and in quoted arguments such as `'~/x'`."""
 
     def parse_known_args(self, args=None, namespace=None):
         return super().parse_known_args([expand_home(word) for word in (sys.argv[1:] if args is None else args)], namespace)
 
 
 def expand_home(word):
+    """Expands `~` at the beginning of an argument, or after the equals sign of `--option=~/x`."""
     option, equals, value = word.partition("=") if word.startswith("--") else ("", "", word)
     return option + equals + os.path.expanduser(value)
 
 
 def program_parser(name, about, epilog=None, **more):
-    """A parser whose help keeps the line breaks of both texts."""
+    """Makes a parser whose help text keeps the line breaks of `about` and `epilog`."""
     return Parser(prog=name, description=about, epilog=epilog, formatter_class=argparse.RawDescriptionHelpFormatter, **more)
 
 
 def number(kind, least, most=math.inf):
-    """A type of argument: whole numbers (int) or any (float), from `least` to `most`."""
+    """Makes a type for argparse: numbers of the type `kind` (int or float) from `least` to `most`."""
     def parse(text):
         try:
             value = kind(text)
@@ -102,7 +105,7 @@ def number(kind, least, most=math.inf):
 
 
 def find_program(name, package="ddm_launch"):
-    """Path of a program. Raises Failure if it is not built."""
+    """Path of a program. Raises Failure if the program is not built."""
     found = roslib.packages.find_node(package, name)
     if not found:
         raise Failure("the program %s of %s is not there: build the workspace, then source its devel/setup.bash"
@@ -111,11 +114,13 @@ def find_program(name, package="ddm_launch"):
 
 
 def package_path(*names, package="ddm_launch"):
+    """Path of a file in the source folder of a package."""
     return os.path.join(roslib.packages.get_pkg_dir(package), *names)
 
 
 def processor(path="/proc/cpuinfo"):
-    """This machine's processor: its name, and the family and model that tell apart generations of one name."""
+    """Name of this machine's processor, with family and model numbers, which distinguish generations with the same
+    name."""
     try:
         with open(path) as stream:
             first = stream.read().split("\n\n")[0]
@@ -129,7 +134,7 @@ def processor(path="/proc/cpuinfo"):
 
 
 def distribution(path="/etc/os-release"):
-    """Name of the distribution, whose compiler and libraries made the programs."""
+    """Name and version of the Linux distribution, or "?" if unknown."""
     try:
         with open(path) as stream:
             return dict(line.rstrip("\n").split("=", 1) for line in stream if "=" in line)["PRETTY_NAME"].strip('"')

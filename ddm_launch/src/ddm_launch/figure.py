@@ -1,4 +1,4 @@
-# figure NAME: every figure that is made of run folders and of what programs leave.
+# figure FIGURE: draws a figure from run folders or from tables.
 # SPDX-License-Identifier: BSD-3-Clause
 import importlib
 import sys
@@ -11,7 +11,8 @@ FIGURES = {"film": film.FILM, "film_strip": film.STRIP, "learning_curve": learni
 
 
 def add_figures(parser, figures):
-    """Gives a parser a subcommand for each figure. The work of the options that it reads draws the figure."""
+    """Adds a subcommand for each figure to a parser. The parsed options have a function `work` that draws the
+    figure."""
     names = parser.add_subparsers(dest="figure", metavar="FIGURE", required=True)
     for name, figure in figures.items():
         of_figure = names.add_parser(name, description=figure.about,
@@ -28,7 +29,8 @@ def add_figures(parser, figures):
 
 
 def main(arguments=None):
-    if arguments is None and sys.argv[1:2] == ["learning_curve_node"]:  # a node, for launch files; figures need no ROS
+    # This subcommand is the node for launch files. The figures need no ROS, so the module is imported here.
+    if arguments is None and sys.argv[1:2] == ["learning_curve_node"]:
         return importlib.import_module("ddm_launch.learning_curve_node").main()
     parser = Parser(prog="figure", description="Draws a figure; `figure FIGURE --help` lists its options.")
     add_figures(parser, FIGURES)

@@ -1,4 +1,4 @@
-# Draws greedy evaluations: as an animation of camera, prediction and feature space, and as a strip of images.
+# Draws evaluations as an animation of image, prediction and feature space, or as a strip of images.
 # SPDX-License-Identifier: BSD-3-Clause
 import collections
 import os
@@ -19,20 +19,21 @@ from ddm_model.model import load
 SUFFIX = ".webp"
 AHEAD_S = 1.0
 PANEL, MARGIN, HEADER, FOOTER = 200, 8, 26, 24  # [pixels]
-LAST_MS = 1500  # the last picture of an evaluation stays
-# Below each panel: words, their distance from its left edge [pixels] and their colour.
+LAST_MS = 1500  # duration of the last image of an evaluation [ms]
+# Text below each panel: words, their distance from the panel's left edge [pixels], and their colour.
 TITLES = ([("image", 0, "black")], [("predicted a second ago", 0, "black")],
           [("features:", 0, "black"), ("now", 66, BLUE), ("plan", 98, ORANGE), ("goal", 132, VERMILLION), ("seen", 166, GREY)])
 EVALUATION = re.compile(r"evaluation_(\d+)$")
 STRIP_IMAGES = 12
 
-# One evaluation. title; dt [s]; images [N x size x size] and what was expected of them, None at first; features [N x 2]; paths:
-# for each image the features that are expected from it on; support_states, goal: features  [.. x 2].
+# One evaluation. title: text. dt: time step [s]. images: images  [N x size x size]. expected: image that was predicted
+# for each image, or None. features: projected features  [N x 2]. paths: for each image its feature and the features
+# predicted from it  [steps + 1 x 2]. support_states, goal: projected features  [.. x 2].
 Clip = collections.namedtuple("Clip", "title dt images expected features paths support_states goal")
 
 
 def plane_of(points):
-    """Projection of features to the two directions in which these points vary most."""
+    """Function that projects features to the two directions with the largest variance of these points."""
     mean, dim = points.mean(axis=0), points.shape[1]
     directions = np.zeros((2, dim))
     found = np.linalg.svd(points - mean, full_matrices=False)[2][:2]
@@ -41,6 +42,8 @@ def plane_of(points):
 
 
 def read_clip(evaluation):
+    """Reads a folder RUN/evaluation_NNN and predicts its images. Returns a Clip. Raises Failure if the folder has
+    another name, or if the model and the plant have different image sizes."""
     evaluation = os.path.normpath(evaluation)
     found = EVALUATION.search(evaluation)
     if not found:
@@ -65,7 +68,7 @@ def read_clip(evaluation):
             expected[now + steps] = np.clip(255.0 * model.decode(ahead[-1:])[0], 0, 255)
     seen = model.support_states if len(model.support_states) > 1 else features
     project = plane_of(seen)
-    # Where each trial has a goal of its own, the model's is that of another.
+    # If the goal is drawn in each trial, the goal in the model belongs to another trial.
     drawn = (read_yaml(os.path.join(run, "config.yaml")).get("plant") or {}).get("goal_site")
     goal = None if drawn or model.goal_feature is None else project(model.goal_feature[None])
     title = re.sub(r".*/(.*)\.yaml$", r"\1", read_setting(run, "experiment", "plant", "plant"))
@@ -75,7 +78,7 @@ def read_clip(evaluation):
 
 
 class Plane:
-    """The right panel: features as points and paths in a square of PANEL pixels."""
+    """The right panel: a square of PANEL pixels with features as points and paths."""
 
     def __init__(self, clip):
         points = np.concatenate([clip.support_states, clip.features])
@@ -110,7 +113,7 @@ def font(size):
 
 
 def pictures_of(clip):
-    """RGB pictures of all images of a clip."""
+    """Draws an RGB picture for each image of a clip."""
     plane, pictures = Plane(clip), []
     for now, image in enumerate(clip.images):
         picture = Image.new("RGB", (3 * PANEL + 4 * MARGIN, HEADER + PANEL + FOOTER + MARGIN), "white")
@@ -129,13 +132,14 @@ def pictures_of(clip):
 
 
 def as_panel(image):
-    """None: nothing is expected yet."""
+    """Scales an image to the size of a panel. None gives an empty panel, because no prediction exists yet."""
     if image is None:
         return Image.new("RGB", (PANEL, PANEL), "#eeeeee")
     return Image.fromarray(np.asarray(image, dtype=np.uint8)).resize((PANEL, PANEL), Image.BICUBIC).convert("RGB")
 
 
 def draw_film(options):
+    """Draws evaluations one after the other into an animated WebP file."""
     if not options.out.lower().endswith(SUFFIX):
         raise Failure("a film must be a .webp, got '%s': give --out another name" % options.out)
     pictures, durations = [], []
@@ -149,7 +153,7 @@ def draw_film(options):
 
 
 def draw_strip(options):
-    """Images above, the torques over the same time below."""
+    """Draws a row of images, and below it the torques over the same time."""
     trials = read_trials(os.path.join(options.folder, "trials.csv"))
     successes = trials[trials.success > 0]
     trial = options.trial if options.trial is not None else (trials if successes.empty else successes).trial.iloc[-1]

@@ -1,4 +1,4 @@
-# Runs the seeds of a sweep by GNU parallel, on this machine or over ssh.
+# Runs the seeds of a sweep with GNU parallel, on this machine or over ssh.
 # SPDX-License-Identifier: BSD-3-Clause
 import contextlib
 import os
@@ -14,11 +14,11 @@ POLL_S = 0.5
 
 
 class GnuParallel:
-    """Runs the seeds of a sweep, `jobs` at a time on each host."""
+    """Runs the seeds of a sweep, with `jobs` seeds at a time on each host."""
 
     def __init__(self, jobs, hosts):
-        """jobs: None for one per core. hosts: file of ssh hosts, None for this machine. Raises Failure if GNU parallel is
-        not installed."""
+        """jobs: seeds at a time; None: one per core. hosts: file of ssh hosts; None: this machine. Raises Failure if
+        GNU parallel is not installed."""
         self.options = ["--jobs", str(jobs)] if jobs is not None else []
         if hosts is not None:
             self.options += ["--sshloginfile", os.path.abspath(hosts), "--filter-hosts"]
@@ -27,19 +27,20 @@ class GnuParallel:
                                               stderr=subprocess.DEVNULL, universal_newlines=True)
         except (FileNotFoundError, subprocess.CalledProcessError):
             version = ""
-        if not version.startswith("GNU parallel"):  # the package moreutils has another program of this name
+        if not version.startswith("GNU parallel"):  # the package moreutils has another program named parallel
             raise Failure("the program parallel is not installed, or not GNU parallel: apt-get install parallel")
 
     def resume(self, folder, _tick):
-        """Raises Failure if an earlier call has left a job array in the hands of Slurm."""
+        """Raises Failure if a Slurm job array of an earlier call may still be running in this folder."""
         job = remembered(folder)
         if job is not None:
             raise Failure("%s. Delete %s if that job has ended" % (job.how_to_go_on(), job_file(folder)))
 
     def run(self, folder, seeds, tick):
-        """Returns when all seeds have ended, well or not. Calls tick() now and then.
+        """Runs the seeds and returns when all have ended, whether they succeed or fail. Calls tick() every POLL_S
+        seconds.
 
-        An exception out of tick(), or out of a signal handler, ends all seeds first.
+        If tick() or a signal handler raises an exception, the method ends all seeds and raises the exception again.
         """
         command = DIE_WITH_PARENT + ["parallel", "--plain", "--will-cite", "--joblog", folder.joblog] + self.options
         command += [" ".join(DIE_WITH_PARENT + ["bash", shlex.quote(folder.script), "{}"]), ":::"] + [str(seed) for seed in seeds]
@@ -52,6 +53,6 @@ class GnuParallel:
                     process.wait(POLL_S)
                 tick()
         except BaseException:
-            process.send_signal(signal.SIGINT)  # the only signal by which every version ends its jobs
+            process.send_signal(signal.SIGINT)  # all versions of GNU parallel end their jobs after this signal
             process.wait()
             raise

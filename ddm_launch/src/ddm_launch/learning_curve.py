@@ -1,4 +1,4 @@
-# Draws the learning curve of a run: the final error after each trial.
+# Draws the learning curve of an experiment: the final error after each trial.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 
@@ -8,8 +8,11 @@ from ddm_launch.run_folder import read_setting, read_trials
 
 
 def draw_one(axes, folder):
-    """Final error of the greedy policy over the images learned from, each point marked with its success. Where no final
-    error is known, as on a robot, successes are drawn at 1 and the others at 0."""
+    """Draws the final error of the evaluations over the number of frames learned from. Markers distinguish successes
+    from failures. If no final error is known, as on a robot, draws successes at 1 and failures at 0.
+
+    Raises Failure if neither final errors nor successes are known.
+    """
     trials = read_trials(os.path.join(folder, "trials.csv"))
     unit = read_setting(folder, "goal", "error_unit", "unit of the final error")
     tolerance = float(read_setting(folder, "goal", "tolerance", "largest error that counts as success"))

@@ -1,4 +1,4 @@
-# learning_curve_node: draws the learning curve of the running experiment as an image, again after each trial.
+# learning_curve_node: publishes the learning curve of the running experiment as an image after each trial.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import tempfile
@@ -18,7 +18,7 @@ from ddm_model.plain_file import write_file
 
 
 def draw_model_errors(axes, path):
-    """V_R and V_P per frame, where the method has them."""
+    """Draws V_R and V_P per frame, for models that have them."""
     table = read_table(path, "frames", "v_r", "v_p")
     for name, label, colour in (("v_r", "reconstruction V_R", GREY), ("v_p", "prediction V_P", ORANGE)):
         known = table[table[name] > 0.0]
@@ -27,7 +27,8 @@ def draw_model_errors(axes, path):
 
 
 def picture(text):
-    """The image for a message on the topic `trials`, 640 x 480 pixels in colour. Its curves grow to the right."""
+    """Draws the image for a message on the topic `trials`: 640 x 480 pixels, RGB. The curves start at the left edge and
+    grow to the right."""
     trials = yaml.load(text, Loader=LOADER)
     with tempfile.TemporaryDirectory() as folder, new_figure(6.4, 4.8, dpi=100) as figure:
         table = os.path.join(folder, "trials.csv")
@@ -40,7 +41,7 @@ def picture(text):
                 draw_one(above, folder)
             except Failure:
                 above.set_title("success is not known: there is no ground truth")
-        below.set_xlim(0, max(trials["frames"], below.dataLim.x1))  # frames of start/bags count, too
+        below.set_xlim(0, max(trials["frames"], below.dataLim.x1))  # includes the frames of start/bags
         below.set_xlabel("frames learned from [image-torque pairs]")
         below.set_ylabel("errors per frame [grey²]")
         figure.canvas.draw()

@@ -1,4 +1,4 @@
-# What a plant says of itself and draws, by the program simulate.
+# Gets descriptions and images of a plant from the program simulate.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import subprocess
@@ -14,17 +14,18 @@ from ddm_launch.tables import motors_of, read_table
 
 
 def simulator(plant, *options):
-    """The command that runs a plant."""
+    """Command line that runs a plant in the program simulate. Raises Failure if simulate is not built."""
     return [find_program("simulate", "ddm_sim"), "--plant", plant, *options]
 
 
 def simulator_of(folder):
-    """The command that runs the plant of a run folder, with the configuration of that folder."""
+    """Command line that runs the plant of a run folder with the configuration of that folder."""
     return simulator(read_setting(folder, "experiment", "plant", "plant"), "--config", os.path.join(folder, "config.yaml"))
 
 
 def describe_plant(command):
-    """What `simulate --describe` prints, {key: value}. command: of simulator(). Raises Failure with the program's words."""
+    """Returns the output of `simulate --describe` as a dictionary. command: result of simulator(). Raises Failure with
+    the program's message if it fails."""
     done = subprocess.run(command + ["--describe"], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                           universal_newlines=True)
     if done.returncode != 0:
@@ -33,9 +34,10 @@ def describe_plant(command):
 
 
 def draw_images(command, start, motors, torques):
-    """The grey images of a plant from an initial state on, under these torques [N x motors]  [N + 1 x size x size].
+    """Simulates a plant and returns its grey images  [N + 1 x size x size]. start: initial state. torques: [N x
+    motors].
 
-    Raises Failure with the program's own words if it fails.
+    Raises Failure with the program's message if it fails.
     """
     lines = [",".join(motors)] + [",".join(repr(float(torque)) for torque in row) for row in torques]
     with tempfile.TemporaryDirectory() as folder:
@@ -53,8 +55,9 @@ def draw_images(command, start, motors, torques):
 
 
 def draw_evaluation(run, trial):
-    """(images as the plant draws them, one for each torque; torques [N x motors]; names of the motors' columns) of an
-    evaluation in a run folder."""
+    """Simulates an evaluation of a run folder again. Returns (rendered images, one per torque  [N x size x size];
+    torques [N x motors]; names of the motors' columns). Raises Failure if the camera has lost frames, or if a file
+    cannot be read."""
     folder, command = os.path.join(run, "evaluation_%03d" % trial), simulator_of(run)
     plant = describe_plant(command)
     trajectory = read_table(os.path.join(folder, "trajectory.csv"), "time_s", *plant["state"])

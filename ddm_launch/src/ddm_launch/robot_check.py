@@ -1,4 +1,4 @@
-# Plays the user of robot.launch on a simulated robot, and measures whether torques came in time and it reached its goal.
+# robot_check: acts as the user of a simulated robot, and measures latencies and the success of evaluations.
 # SPDX-License-Identifier: BSD-3-Clause
 import math
 import os
@@ -20,18 +20,18 @@ from ddm_launch.plant import describe_plant, simulator
 from ddm_model.plain_file import write_file
 
 LIMIT_S = 60.0
-SETTLED_STEPS = 10        # as `success` of an experiment has it
-DEADLINE_MISSES = 0       # the targets
+SETTLED_STEPS = 10  # steps at the end of an evaluation that count for success, as in an experiment
+DEADLINE_MISSES = 0  # largest number of missed deadlines
 LATENCY_P99_MS = 50.0
 
 
 def quantile(values, q):
-    """By nearest rank."""
+    """q-quantile by nearest rank. Infinite without values."""
     return sorted(values)[max(0, math.ceil(q * len(values)) - 1)] if values else math.inf
 
 
 class PlantGoal:
-    """The goal of a simulated plant, and when it is reached: by ground truth, which robot.launch never sees."""
+    """Goal of a simulated plant. The error uses the true positions, which robot.launch does not get."""
 
     def __init__(self, plant):
         about = describe_plant(simulator(plant))
@@ -39,13 +39,13 @@ class PlantGoal:
         self._kinds = [joint["kind"] for joint in about["joints"]]
 
     def error(self, positions):
-        """Of the joint that is farthest from its goal: angles [deg], lengths in the plant's own unit."""
+        """Largest error of a joint: angles [deg], lengths in the plant's own unit."""
         return max(abs(math.degrees(math.remainder(position - goal, 2.0 * math.pi))) if kind == "angle"
                    else abs(position - goal) for kind, position, goal in zip(self._kinds, positions, self.state))
 
 
 class Load:
-    """Trains on the bags so far again and again, in processes of its own."""
+    """Trains models on the recorded bags in an endless loop, in a separate process, to load the processor."""
 
     LOOP = """while sleep 0.5; do
       OMP_NUM_THREADS=1 "$0" --config "$1" --out "$2/model.ddm" "$3"/trial_*/trial.bag >"$2/output" 2>&1 && echo >>"$2/trained"
@@ -58,6 +58,7 @@ class Load:
                                          stdin=subprocess.DEVNULL, start_new_session=True)
 
     def num_trainings(self):
+        """Number of trainings that have finished."""
         path = os.path.join(self._scratch.name, "trained")
         return os.path.getsize(path) if os.path.exists(path) else 0
 
@@ -67,7 +68,8 @@ class Load:
 
 
 def call(name, kind, *values, **fields):
-    """Calls a service that answers with success and message. Raises rospy.ServiceException where it does not succeed."""
+    """Calls a service whose response has the fields success and message. Raises rospy.ServiceException if success is
+    false, rospy.ROSException if the service does not appear within LIMIT_S."""
     rospy.wait_for_service(name, LIMIT_S)
     answer = rospy.ServiceProxy(name, kind)(*values, **fields)
     if not answer.success:
@@ -75,19 +77,22 @@ def call(name, kind, *values, **fields):
 
 
 def show_goal_and_enable(goal):
-    """What a user does: shows the robot its goal, then switches the motors on."""
+    """Shows the goal to the robot, then enables the motors, as a user would."""
     call("plant/reset", Reset, start=goal.state)
-    for _ in range(3):  # the camera is a frame late, and robot_node may not have seen any yet
+    for _ in range(3):  # the camera is one image late, and robot_node may not have received one yet
         rospy.wait_for_message("camera/image_raw", Image, LIMIT_S)
     call("take_goal", Trigger)
     call("enable", SetBool, True)
 
 
 class RobotCheck:
+    """Records latencies, deadline misses and errors of evaluations. Writes RUNS/robot_check.yaml after each trial."""
+
     def __init__(self, goal):
         self._plant_goal, self._runs = goal, rospy.get_param("~runs")
         self._lock = threading.Lock()
-        self._goal, self._truth = None, {}  # of the trial under way; stamp [ns]: error
+        # Goal of the running trial, and error of the plant by time stamp [ns].
+        self._goal, self._truth = None, {}
         self._latencies_ms, self._misses = [], 0
         self._frames, self._control_s, self._evaluations = 0, 0.0, []
         self.load = Load(self._runs, rospy.get_param("~preset_file")) if rospy.get_param("~load") else None

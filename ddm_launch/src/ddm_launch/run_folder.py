@@ -1,4 +1,4 @@
-# What figures and tables read from a run folder, which experiment.launch and run_experiment write.
+# Reads run folders, which experiment.launch and run_experiment write.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 
@@ -10,35 +10,39 @@ from ddm_launch.tables import read_table
 
 
 def read_trials(path):
-    """The rows of a trials.csv, or of a sweep.csv with those of many seeds. success, final_error (without its sign): NaN
-    where they are not known. Raises Failure as read_table() does, and if a trial of a seed is there twice."""
+    """Reads a trials.csv, or a sweep.csv with the trials of many seeds. Unknown values of success and final_error are
+    NaN; final_error is the absolute value. Raises Failure as read_table() does, and if the table has two rows of a
+    trial of a seed."""
     table = read_table(path, "seed", "trial", "frames", "success", "final_error", remedy="give a trials.csv or sweep.csv",
                        once=("seed", "trial"))
     return table.assign(final_error=table.final_error.abs())
 
 
 def read_trajectory(folder):
-    """The pendulum's true state in one episode, FOLDER/trajectory.csv: a row for each image, time_s from the first one on."""
+    """Reads the pendulum's true state in one episode from FOLDER/trajectory.csv: one row per image, with time_s = 0 at
+    the first image."""
     table = read_table(os.path.join(folder, "trajectory.csv"), "time_s", "angle_rad", "rate_rad_per_s")
     return table.assign(time_s=table.time_s - table.time_s[0])
 
 
 def is_finished(folder):
-    """Whether the run has its verdict."""
+    """Whether summary.yaml says that the experiment is finished."""
     return read_yaml(os.path.join(folder, "summary.yaml")).get("finished") is True
 
 
 def num_finished(folder):
-    """Number of finished trials of a run that may be under way: rows of trials.csv."""
+    """Number of finished trials of an experiment that may still be running: rows of trials.csv."""
     try:
-        with open(os.path.join(folder, "trials.csv"), "rb") as stream:  # whatever is in it
+        # Binary mode, because the content may be damaged.
+        with open(os.path.join(folder, "trials.csv"), "rb") as stream:
             return len(stream.read().splitlines()) - 1
     except FileNotFoundError:
         return 0
 
 
 def read_setting(folder, block, key, meaning):
-    """One value of FOLDER/config.yaml as text. meaning: what it names, for the message of the Failure."""
+    """Returns one value of FOLDER/config.yaml as text. meaning: description of the value for the error message. Raises
+    Failure if the file or the value is missing."""
     path = os.path.join(folder, "config.yaml")
     try:
         with open(path) as stream:

@@ -1,4 +1,4 @@
-# Runs the seeds of a sweep as a job array of Slurm, one task for each seed.
+# Runs the seeds of a sweep as a job array of Slurm, with one task per seed.
 # SPDX-License-Identifier: BSD-3-Clause
 import collections
 import itertools
@@ -13,40 +13,42 @@ import time
 from ddm_launch.command import Failure, Interrupted, held_back
 from ddm_model.plain_file import write_file
 
-# States of tasks that have not ended. A task that lost its node or its place may be queued again.
+# States of tasks that have not ended. Slurm may queue a task again that has lost its node or was preempted.
 ALIVE = {"BOOT_FAIL", "COMPLETING", "CONFIGURING", "LAUNCH_FAILED", "NODE_FAIL", "PENDING", "POWER_UP_NODE", "PREEMPTED",
          "RECONFIG_FAIL", "REQUEUED", "REQUEUE_FED", "REQUEUE_HOLD", "RESIZING", "RESV_DEL_HOLD", "RUNNING", "SIGNALING",
          "SPECIAL_EXIT", "STAGE_OUT", "STOPPED", "SUSPENDED", "UPDATE_DB"}
 
 
 def index_ranges(seeds):
-    """Ascending seeds as sbatch writes them: [0, 1, 2, 5] is "0-2,5"."""
+    """Formats ascending seeds for sbatch: [0, 1, 2, 5] gives "0-2,5"."""
     groups = itertools.groupby(enumerate(seeds), lambda pair: pair[1] - pair[0])
     ranges = [[seed for _, seed in group] for _, group in groups]
     return ",".join("%d" % seeds[0] if len(seeds) == 1 else "%d-%d" % (seeds[0], seeds[-1]) for seeds in ranges)
 
 
 def call(*command):
-    """Runs a command of Slurm. The result has the exit code and what the command printed."""
-    # What a user has set for squeue by hand must not hide tasks from us.
+    """Runs a command of Slurm. Returns a CompletedProcess with exit code and output."""
+    # Ignores the user's default options for squeue, which could hide tasks.
     environment = {key: value for key, value in os.environ.items() if not key.startswith("SQUEUE_")}
     return subprocess.run(command, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                           stderr=subprocess.PIPE, universal_newlines=True, errors="replace")
 
 
 class Job(collections.namedtuple("Job", "number cluster")):
-    """A job array. cluster: empty for the cluster that the commands of Slurm address by default."""
+    """A job array. cluster: name of the cluster, or empty for Slurm's default cluster."""
 
     def __str__(self):
         return "Slurm job %s%s" % (self.number, self.cluster and " of cluster " + self.cluster)
 
     def command(self, name, *words):
+        """Command line of a program of Slurm for the cluster of this job."""
         return [name] + (["-M", self.cluster] if self.cluster else []) + list(words)
 
     def ask(self):
-        """(whether tasks may be running, what Slurm said if it gave no answer to this)."""
+        """Asks Slurm for the state of the array. Returns (whether tasks may be running, output of Slurm if it gave no
+        answer)."""
         done = call(*self.command("squeue", "--noheader", "--array", "--jobs", self.number, "--format", "%T"))
-        # The name of the cluster or lines of a site may surround the states.
+        # Lines with the name of the cluster or messages of a site may surround the states.
         if ALIVE & {line.strip() for line in done.stdout.splitlines()}:
             return True, ""
         said = (done.stderr + done.stdout).strip()
@@ -56,17 +58,18 @@ class Job(collections.namedtuple("Job", "number cluster")):
         return True, said or "squeue ended with code %d" % done.returncode
 
     def how_to_go_on(self):
+        """Message for the user that tells how to resume or cancel the job."""
         return ("%s may be running. The same command waits for it, '%s' cancels it"
                 % (self, " ".join(self.command("scancel", self.number))))
 
 
 def job_file(folder):
-    """The file that names the job array in the hands of Slurm, which also runs without the sweep that submitted it."""
+    """File with the number of the job array. The array may run longer than the sweep that submitted it."""
     return os.path.join(folder.path, "slurm_job")
 
 
 def remembered(folder):
-    """The job array of this folder that may be running, or None."""
+    """Job array of this folder that may be running, or None. Raises Failure if the file has other content."""
     try:
         with open(job_file(folder)) as stream:
             match = re.match(r"(\d+)(?:;(\S*))?\s", stream.read())
@@ -81,12 +84,13 @@ def remembered(folder):
 class SlurmArray:
     """Runs the seeds of a sweep as the tasks of one job array, at most `jobs` at a time.
 
-    Only SIGINT, the Ctrl-C of a person, cancels the job array. It outlives any other end of the sweep, such as the SIGHUP
-    of a connection that has dropped: resume() then waits for it.
+    Only SIGINT (Ctrl-C) cancels the job array. If the sweep ends for another reason, for example by SIGHUP after a lost
+    connection, the array continues, and a later call of resume() waits for it.
     """
 
     def __init__(self, jobs):
-        """jobs: None for as many as the cluster gives."""
+        """jobs: number of tasks at a time; None: as many as the cluster runs. Raises Failure if Slurm's programs are
+        not installed."""
         self.jobs = jobs
         for name in ("sbatch", "squeue", "scancel"):
             if shutil.which(name) is None:
@@ -98,7 +102,7 @@ class SlurmArray:
         log = os.path.join(folder.path, "logs", "seed_").replace("%", "%%") + "%4a.log"
         done = call("sbatch", "--parsable", "--array", array, "--job-name", "ddm_sweep", "--ntasks", "1",
                     "--cpus-per-task", "1", "--output", log, "--open-mode", "append", folder.script)
-        # A site may print lines before and after the one of --parsable, also a number below the words that explain it.
+        # A site may print lines around the output of --parsable, for example a number below the words that explain it.
         number = r"^[ \t]*(\d+)(?:;(\S*))?[ \t\r]*$"
         found = re.findall(r"(?<!:\n)" + number, done.stdout, re.MULTILINE) or re.findall(number, done.stdout, re.MULTILINE)
         if done.returncode != 0 or not found:
@@ -111,13 +115,17 @@ class SlurmArray:
         return Job(*found[-1])
 
     def run(self, folder, seeds, tick):
-        """Submits the seeds. Returns when all tasks have ended, well or not. Calls tick() now and then."""
-        with held_back():  # nobody could wait for a job whose number is not known
+        """Submits the seeds and returns when all tasks have ended, whether they succeed or fail. Calls tick() every few
+        seconds.
+
+        Raises Failure if sbatch does not confirm the job array.
+        """
+        with held_back():  # a signal must not separate the submission from the note of its number
             write_file(job_file(folder), "%s;%s\n" % self._submit(folder, seeds))
         self.resume(folder, tick)
 
     def resume(self, folder, tick):
-        """Waits for the job array that this or an earlier call has submitted, if there is one."""
+        """Waits for the job array that this call or an earlier one has submitted, if there is one."""
         job = remembered(folder)
         if job is None:
             return
@@ -143,4 +151,4 @@ class SlurmArray:
                       file=sys.stderr, flush=True)
             was_silent = bool(silence)
             time.sleep(pause_s)
-            pause_s = min(5.0, 1.2 * pause_s)  # the end of a short sweep is seen soon, and a long one asks seldom
+            pause_s = min(5.0, 1.2 * pause_s)  # short intervals at first; at most 5 s, to keep the load on Slurm small

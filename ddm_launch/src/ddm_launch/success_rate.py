@@ -1,4 +1,4 @@
-# Draws success rates over the frames learned from, next to the curves of the paper's Fig. 8.
+# Draws success rates over the number of frames learned from, together with the curves of the paper's Fig. 8.
 # SPDX-License-Identifier: BSD-3-Clause
 import argparse
 import collections
@@ -15,25 +15,27 @@ from ddm_launch.figure_style import (BLACK, COLUMN_WIDTH, GREY, METHOD_STYLES, S
 from ddm_launch.run_folder import read_trials
 from ddm_launch.tables import read_table
 
-# The paper's methods: name; of the published curve: column of the rate, of its standard error (None: not given). A curve of
-# ours of such a name is drawn in the same colour as the published one.
+# The paper's methods: name, column of the published rate, column of its standard error (None: not published). Our curve
+# of a method has the same colour as the published curve.
 METHODS = (("DDM + MPC", "ddm_mpc", "ddm_mpc_se"),
            ("PILCO, state", "pilco_state", "pilco_state_se"),
            ("PILCO, features", "pilco_autoencoder_features", None),
            ("PILCO, PCA", "pilco_pca20_features", None))
-# Colour, marker of the first, second, ... of our curves of a name that METHOD_STYLES does not have.
+# Colours and markers of our curves whose names are not in METHOD_STYLES, in order.
 OTHERS = ((SKY, "h"), (YELLOW, "p"), (BLACK, "d"), (GREY, "x"))
-LONGEST_PAIR = 54  # [characters] that fit next to each other into the width of a column
-MOST_CURVES = 5  # that can be told apart; beyond that those that are mostly 0 are named only
+LONGEST_PAIR = 54  # largest total length of two labels that fit side by side in a column [characters]
+# Largest number of curves that a reader can distinguish. In figures with more curves, the curves that are mostly 0
+# appear only in the legend.
+MOST_CURVES = 5
 
-# Success rates of one name. rates: indexed by frames, with columns rate, low and high: ends of the error bars or of the band,
-# or NaN where they are not known.
+# Success rates of one method. rates: table with the index frames and the columns rate, low and high; low and high are
+# the ends of the error bars or of the band, or NaN if unknown.
 Curve = collections.namedtuple("Curve", "name label rates is_ours")
 
 
 def read_curve(name, path, wilson=False):
-    """The curve of a trials.csv or sweep.csv; the label names the number of its seeds. wilson: with 95 % intervals instead
-    of standard errors."""
+    """Reads the curve of a trials.csv or sweep.csv; its label has the number of seeds. wilson: use 95 % intervals
+    instead of standard errors. Raises Failure if the success of all trials is unknown."""
     trials = read_trials(path)
     rates = success_rates(trials)
     if rates.empty:
@@ -45,7 +47,7 @@ def read_curve(name, path, wilson=False):
 
 
 def read_published(path):
-    """The paper's curves, in the order of METHODS."""
+    """Reads the paper's curves, in the order of METHODS."""
     table = read_table(path, "frames", *(name for method in METHODS for name in method[1:] if name),
                        remedy="it is results/published/success_rate.csv of ddm_launch").set_index("frames")
     curves = []
@@ -57,7 +59,7 @@ def read_published(path):
 
 
 def styles(names):
-    """(colour, marker) of each of our curves. Raises Failure if some could not be distinguished."""
+    """Returns {name: (colour, marker)} of our curves. Raises Failure if the curves could not be distinguished."""
     others = [name for name in names if name not in METHOD_STYLES]
     if len(others) > len(OTHERS) or len(set(names)) < len(names):
         raise Failure("each curve must have a label of its own, and at most %d labels besides %s can be distinguished, got %s: "
@@ -70,20 +72,20 @@ def is_mostly_zero(curve):
 
 
 def in_words(curve):
-    """Label of a curve that is not drawn."""
+    """Label in the legend for a curve that is not drawn."""
     most = curve.rates.rate.max()
     return curve.label + (": mostly 0, at most %.2g" % most if most else ": 0")
 
 
 def level_line(rates, last_frames):
-    """The rates of what has learned from no images, such as the oracle, are the same up to last_frames. Other rates stay as
-    they are."""
+    """Extends the rates of a method that learns from no images, such as the oracle, to a level line up to last_frames.
+    Returns other rates unchanged."""
     return rates if list(rates.index) != [0] else pandas.concat([rates, rates.set_axis([last_frames])])
 
 
 def draw_curves(axes, curves, wilson):
-    """Ours with full lines and markers, on top of the paper's, which are dashed, open and lighter. wilson: the ends of ours
-    are the edges of a band."""
+    """Draws our curves with full lines and markers, above the paper's curves, which are dashed, open and lighter.
+    wilson: draws intervals of our curves as bands."""
     last_frames = max(100, *(curve.rates.index[-1] for curve in curves))
     looks = styles([curve.name for curve in curves if curve.is_ours])
     named_only = [curve for curve in curves if len(curves) > MOST_CURVES and is_mostly_zero(curve)]
@@ -112,7 +114,7 @@ def draw_curves(axes, curves, wilson):
 
 
 def source(text):
-    """LABEL=FILE.csv as (label, path)."""
+    """Parses LABEL=FILE.csv. Returns (label, path)."""
     label, separator, path = text.partition("=")
     if not (label and separator and path):
         raise argparse.ArgumentTypeError("must be LABEL=FILE.csv, got '%s'" % text)

@@ -1,4 +1,4 @@
-# Runs an experiment for many seeds, by GNU parallel or as a Slurm job array, and collects their rows.
+# sweep: runs an experiment for many seeds, with GNU parallel or as a Slurm job array, and collects their tables.
 # SPDX-License-Identifier: BSD-3-Clause
 import argparse
 import os
@@ -41,7 +41,7 @@ Slurm (--slurm):
 
 
 def seed_range(text):
-    """range(A, B) of "A:B"."""
+    """Parses "A:B" to range(A, B)."""
     match = re.match(r"(\d{1,10}):(\d{1,10})$", text)
     seeds = range(int(match.group(1)), int(match.group(2))) if match else ()
     if not 1 <= len(seeds) <= MAX_SEEDS:
@@ -71,7 +71,8 @@ def make_parser():
 
 
 def parse(arguments):
-    """(options, words for the program). Ends the process with code 2 and a message if they make no sense."""
+    """Returns (options, arguments of the program). If the arguments are wrong, prints a message and ends the process
+    with code 2."""
     parser = make_parser()
     split = arguments.index("--") if "--" in arguments else len(arguments)
     options = parser.parse_args(arguments[:split])
@@ -91,7 +92,7 @@ def parse(arguments):
 
 
 def run_seeds(engine, folder, seeds):
-    """Runs those seeds that are not finished, and prints a line for each seed that finishes."""
+    """Runs the seeds that are not finished, and prints a line for each seed that finishes."""
     pending = [seed for seed in seeds if not folder.is_finished(seed)]
 
     def tell():
@@ -109,7 +110,7 @@ def run_seeds(engine, folder, seeds):
 
 
 def report(folder, seeds, start):
-    """Collects, says how it went, and returns whether all seeds are finished."""
+    """Collects the tables of all seeds and prints a summary. Returns whether all seeds are finished."""
     finished, problems = folder.collect(seeds)
     job = remembered(folder)
     if job is not None:
@@ -131,7 +132,7 @@ def report(folder, seeds, start):
 
 
 def sweep(options, more):
-    """Returns the exit code. Raises Interrupted, after the report, if a signal asked to end."""
+    """Runs the sweep and returns the exit code. After a signal, prints the report and raises Interrupted."""
     start = time.monotonic()
     engine = SlurmArray(options.jobs) if options.slurm else GnuParallel(options.jobs, options.hosts)
     with SweepFolder(options.out, options.program, options.trials, more, options.seeds[0]) as folder:

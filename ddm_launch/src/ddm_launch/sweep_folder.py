@@ -1,4 +1,4 @@
-# The folder of a sweep: the script that runs a seed, which seeds are finished, and the rows of all of them in one table.
+# Class SweepFolder: the folder of a sweep with the script for one seed, and the results of all seeds.
 # SPDX-License-Identifier: BSD-3-Clause
 import contextlib
 import csv
@@ -13,15 +13,15 @@ from ddm_launch.command import Failure, find_program
 from ddm_launch.settings import differences, read_yaml
 from ddm_model.plain_file import remove_unfinished, write_file
 
-# The programs that a sweep can run, and the table that each writes into its folder.
+# Programs that a sweep can run, and the table that each program writes into its folder.
 TABLES = {"run_experiment": "trials.csv", "prediction_experiment": "predictions.csv"}
 
-# Keys of config.yaml in which the seeds of one sweep may differ.
+# Keys of config.yaml that may differ between the seeds of a sweep.
 MAY_DIFFER = {"version", "renderer", "experiment/seed", "experiment/trials", "experiment/runs", "experiment/timeout",
               "sim/watchdog"}
 
-# A process may be killed without a chance to end those that it started: then the kernel ends them. With this, each link of
-# the chain sweep - parallel - (ssh -) script - program falls with the one before it.
+# The kernel ends a process when its parent is killed, even if the parent could not end the process itself. Each process
+# in the chain sweep - parallel - (ssh -) script - program has this protection.
 DIE_WITH_PARENT = ["setpriv", "--pdeathsig", "KILL"]
 
 SCRIPT = """\
@@ -42,15 +42,16 @@ exit "$code"
 
 
 class BadOptions(Failure):
-    """The program refuses the options that it is given."""
+    """The program refuses its options."""
 
     exit_code = 2
 
 
 def find_setup(program):
-    """The setup.bash that each seed sources first, on other hosts too: that of the topmost workspace that is sourced here,
-    which may hold plants that the workspace of the program does not know. Where none is sourced, that of the program."""
-    prefix = os.path.dirname(os.path.dirname(os.path.dirname(program)))  # PREFIX/lib/ddm_launch/PROGRAM
+    """Path of the setup.bash that each seed sources first, also on other hosts. This is the file of the topmost
+    workspace in CMAKE_PREFIX_PATH, which may have plants that the workspace of the program lacks. Without such a
+    workspace, it is the file of the program's workspace. Raises Failure if no setup.bash exists."""
+    prefix = os.path.dirname(os.path.dirname(os.path.dirname(program)))  # program is PREFIX/lib/ddm_launch/PROGRAM
     for folder in os.environ.get("CMAKE_PREFIX_PATH", "").split(os.pathsep) + [prefix]:
         path = os.path.join(folder, "setup.bash")
         if folder and os.path.isfile(path):
@@ -60,8 +61,8 @@ def find_setup(program):
 
 
 def lock(path):
-    """Creates the file of a lock, which names host and process: on file systems that clusters share, locks of the kernel may be
-    missing. The folder of each seed has a lock of its own, by its program, which protects the results.
+    """Creates a lock file with the names of host and process. A file is used because the shared file systems of
+    clusters may lack locks of the kernel. Each seed's program also locks its own folder, which protects the results.
 
     Raises Failure if a process that may be running has the lock, OSError if the file cannot be written.
     """
@@ -73,7 +74,7 @@ def lock(path):
         except FileExistsError:
             with open(path, errors="replace") as stream:
                 host, _, pid = stream.read().strip().partition(" ")
-        except OSError:  # for example a full disk
+        except OSError:  # for example, the disk is full
             with contextlib.suppress(OSError):
                 os.remove(path)
             raise
@@ -87,22 +88,23 @@ def lock(path):
 class SweepFolder:
     """The folder that --out names:
 
-      sweep.yaml           what is run; another sweep in this folder is refused
-      run_seed.sh          the command of one seed
-      seed_NNNN/           the results of a seed, by the program itself
-      logs/seed_NNNN.log   what the program said when it ran last
+      sweep.yaml           program and options; another sweep in this folder is refused
+      run_seed.sh          script for one seed
+      seed_NNNN/           results of a seed
+      logs/seed_NNNN.log   output of a seed's program in its last run
       joblog.tsv           GNU parallel's job log of the last call
-      slurm_job            number and cluster of the job array while it is in the hands of Slurm
-      .lock                host and process of the sweep that holds the folder
-      sweep.csv            the rows of all finished seeds
+      slurm_job            number and cluster of a Slurm job array that may be running
+      .lock                host and process of the sweep that uses the folder
+      sweep.csv            rows of all finished seeds
 
-    A context manager: at most one sweep holds the folder at a time.
+    A context manager: only one sweep uses the folder at a time.
     """
 
     def __init__(self, path, program, trials, options, seed):
-        """program: a key of TABLES. trials: None for a program that has none. options: all other options of the program but
-        seed and folder. seed: any of the seeds. Raises Failure if the program is not there, refuses its options, or if the
-        folder holds another sweep; the folder is made when the options are known to be good."""
+        """program: a key of TABLES. trials: number of trials, or None for a program without trials. options: all other
+        options of the program except seed and folder. seed: any of the seeds. Raises Failure if the program does not
+        exist or refuses its options, or if the folder has another sweep. The folder is created after the options have
+        been checked."""
         self.path, self.trials, self.title = os.path.abspath(path), trials, " ".join([program] + options)
         self.script, self.table, self.joblog, self._lock = (
             os.path.join(self.path, name) for name in ("run_seed.sh", "sweep.csv", "joblog.tsv", ".lock"))
@@ -125,12 +127,13 @@ class SweepFolder:
         return self
 
     def __exit__(self, *_):
-        with contextlib.suppress(FileNotFoundError):  # a person may have deleted it
+        with contextlib.suppress(FileNotFoundError):  # a user may have deleted it
             os.remove(self._lock)
 
     def _check_options(self, seed):
-        """Runs the program with a folder that cannot be made. If its options are good, it fails for that reason before it has
-        computed anything. Otherwise it ends with code 2 and its own words, or with code 0 after it has printed a help text."""
+        """Runs the program with an output folder that cannot be created. With valid options the program fails for this
+        reason before it computes anything. With invalid options it ends with code 2 and a message, and with --help it
+        ends with code 0. Raises BadOptions in the last two cases."""
         done = subprocess.run(self._command + ["--seed", str(seed), "--out", os.devnull], stdin=subprocess.DEVNULL,
                               stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, universal_newlines=True)
         if done.returncode in (0, 2):
@@ -153,14 +156,14 @@ class SweepFolder:
         return os.path.join(self.path, "logs", "seed_%04d.log" % seed)
 
     def is_finished(self, seed):
-        """Whether the seed has its verdict, for as many trials as are asked for."""
+        """Whether the seed is finished, with at least the requested number of trials."""
         summary = read_yaml(os.path.join(self.seed_folder(seed), "summary.yaml"))
         trials = summary.get("trials")
         return summary.get("finished") is True and (
             self.trials is None or (isinstance(trials, int) and trials >= self.trials))
 
     def prepare(self, seeds):
-        """Writes the script that runs a seed, and removes what earlier calls said about these seeds."""
+        """Writes the script for one seed, and removes the old logs of these seeds."""
         quoted = {name: shlex.quote(text) for name, text in (
             ("folder", self.path), ("setup", self._setup), ("working_folder", os.getcwd()))}
         write_file(self.script, SCRIPT.format(command=" ".join(map(shlex.quote, DIE_WITH_PARENT + self._command)), **quoted))
@@ -169,7 +172,7 @@ class SweepFolder:
                 os.remove(self.log(seed))
 
     def last_words(self, seed):
-        """The last line that a seed's program said, and where the rest is."""
+        """Last line of output of a seed's program, with the path of the log."""
         try:
             with open(self.log(seed), errors="replace") as stream:
                 lines = [line.strip() for line in stream if line.strip()]
@@ -178,9 +181,9 @@ class SweepFolder:
         return "%s (%s)" % (lines[-1] if lines else "it said nothing", self.log(seed))
 
     def collect(self, seeds):
-        """Writes sweep.csv over the finished ones of these seeds; removes it if there are none.
+        """Writes sweep.csv with the rows of all finished seeds. Removes the file if no seed is finished.
 
-        Returns ({seed: its rows}, {seed: what is wrong with it}), together all seeds.
+        Returns ({seed: rows}, {seed: problem}), which together contain all seeds.
         """
         finished, problems, lines, first = {}, {}, [], None
         for seed in sorted(seeds):
@@ -204,7 +207,8 @@ class SweepFolder:
         return finished, problems
 
     def _read_table(self, seed):
-        """The lines of a finished seed's table, the header first, up to the trial asked for."""
+        """Lines of a finished seed's table up to the requested trial, starting with the header. Raises Failure if the
+        table is damaged."""
         path = os.path.join(self.seed_folder(seed), self._table_of_seed)
         try:
             with open(path, newline="") as stream:
@@ -219,7 +223,7 @@ class SweepFolder:
         return lines[:count + 1]
 
     def _require_same_experiment(self, first, seed, header):
-        """All rows of a table are of one experiment: they have the columns and configuration of the first finished seed."""
+        """Raises Failure if columns or configuration of this seed differ from those of the first finished seed."""
         there, here = (read_yaml(os.path.join(self.seed_folder(k), "config.yaml")) for k in (first[0], seed))
         found = differences(there, here, MAY_DIFFER)
         if header != first[1]:

@@ -1,4 +1,4 @@
-# CSV files: reading with checks that name file and column, and writing.
+# Reads and writes CSV files. Error messages name file and column.
 # SPDX-License-Identifier: BSD-3-Clause
 import csv
 import io
@@ -12,15 +12,16 @@ from ddm_model.plain_file import write_file
 
 
 def read_table(path, *numbers, remedy="is its folder a run folder?", once=()):
-    """A CSV file as a data frame.
+    """Reads a CSV file as a data frame.
 
-    numbers: columns that must be there, with finite numbers or nothing in their cells. once: columns whose cells name a
-    row. Raises Failure with the remedy if the file cannot be read, and if it lacks a column, has no row, has another text
-    in place of a number, or names a row twice.
+    numbers: required columns, whose cells must be finite numbers or empty. once: columns whose combined values identify
+    a row.
+    Raises Failure with the remedy if the file cannot be read, lacks a column, has no row, has text in place of a
+    number, or identifies two rows by the same values.
     """
     try:
         table = pandas.read_csv(path, float_precision="round_trip")
-    except (OSError, ValueError) as error:  # ValueError: whatever pandas finds wrong with the contents
+    except (OSError, ValueError) as error:  # pandas raises several kinds of ValueError for invalid contents
         raise Failure("%s cannot be read (%s): %s" % (path, getattr(error, "strerror", None) or error, remedy)) from None
     missing = [name for name in numbers if name not in table]
     if missing:
@@ -39,12 +40,13 @@ def read_table(path, *numbers, remedy="is its folder a run folder?", once=()):
 
 
 def motors_of(path):
-    """Names of the motors' columns of a torques.csv: step, motors, exploratory."""
+    """Names of the motors' columns in a torques.csv, which lie between the columns step and exploratory."""
     return list(read_table(path))[1:-1]
 
 
 def write_csv(path, header, rows):
-    """Floats get six digits. The file appears only when it is complete."""
+    """Writes a CSV file with six significant digits for floats. The file appears when it is complete. Raises OSError if
+    the file cannot be written."""
     os.makedirs(os.path.dirname(path) or ".", exist_ok=True)
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")

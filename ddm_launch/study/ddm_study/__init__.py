@@ -1,2 +1,2 @@
-# What produces the committed results, from command lines and run folders. Not installed.
+# Makes the committed results from run folders. This package is not installed.
 # SPDX-License-Identifier: BSD-3-Clause

@@ -1,4 +1,4 @@
-# Collects from the folder of a sweep what tables and figures need of single runs.
+# study collect: collects data of single experiments from the folder of a sweep, for tables and figures.
 # SPDX-License-Identifier: BSD-3-Clause
 import glob
 import os
@@ -19,10 +19,11 @@ Collects from the folder of a sweep what tables and figures need of single runs:
   last_models    success and mean return of the episodes that `evaluate` has left in each seed's folder last_model"""
 NUM_ANGLE_SEEDS, NUM_ANGLE_TRIALS = 16, 15
 SEARCH_KEYS = ["gp_s", "policy_search_s", "sparse", "points", "iterations", "evaluations", "cost_before", "cost_after",
-               "message"]  # of pilco.yaml
+               "message"]  # keys of pilco.yaml
 
 
 def angles(runs):
+    """Angles over time in the evaluations of the first seeds. runs: {seed: run folder}."""
     parts = []
     for seed, folder in list(runs.items())[:NUM_ANGLE_SEEDS]:
         for trial in read_trials(os.path.join(folder, "trials.csv")).head(NUM_ANGLE_TRIALS).itertuples():
@@ -34,6 +35,7 @@ def angles(runs):
 
 
 def policies(runs):
+    """Times and results of the policy search in each trial of PILCO. Raises Failure if a trial has none."""
     rows = []
     for seed, folder in runs.items():
         for trial in read_trials(os.path.join(folder, "trials.csv")).itertuples():
@@ -47,6 +49,7 @@ def policies(runs):
 
 
 def last_models(runs):
+    """Success and mean return of the last model of each seed."""
     rows = []
     for seed, folder in runs.items():
         episodes = read_table(folder, "last_model", "evaluation.csv")

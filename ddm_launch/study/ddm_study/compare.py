@@ -1,4 +1,4 @@
-# Compares results that were made again with committed ones, row by row.
+# study compare: compares reproduced results with committed ones, row by row.
 # SPDX-License-Identifier: BSD-3-Clause
 import glob
 import os
@@ -17,9 +17,10 @@ MAY_DIFFER = ["version", "train_s", "wall_s", "plan_ms_median", "plan_ms_p99", "
 
 
 def compare(committed, again):
-    """(number of rows, the first difference or None) of a table that was made again for some seeds."""
+    """Compares a reproduced table of some seeds with the committed one. Returns (number of rows, first difference or
+    None)."""
     old, new = (read_table(path).drop(columns=MAY_DIFFER, errors="ignore") for path in (committed, again))
-    if "seed" not in new or len(new.columns) < 2:  # nothing in it is a result of a seed
+    if "seed" not in new or len(new.columns) < 2:  # the table has no results of seeds
         return 0, None
     if set(old.columns) != set(new.columns):
         return len(new), "only one of the two files has the columns %s" % ", ".join(sorted(set(old.columns) ^ set(new.columns)))

@@ -1,4 +1,4 @@
-# Draws curves of results: the angle over time in evaluations (the paper's Fig. 7), and the return of a task over robot time.
+# Draws angles over time in evaluations (as in the paper's Fig. 7), and returns of tasks over robot time.
 # SPDX-License-Identifier: BSD-3-Clause
 import math
 
@@ -10,25 +10,26 @@ from ddm_launch.figure_style import (BLUE, COLUMN_WIDTH, METHOD_STYLES, PAGE_WID
                                      new_figure, panel_above_legend, save)
 from ddm_study.results import PHYSICS_FRAMES, SUITE, read_table, returns
 
-COLUMNS = 5  # panels in a row
+COLUMNS = 5  # panels per row
 SUCCESS_LIMIT = 10.0 / 180.0  # [half turns]
-MOST_TURNS = 2.3  # the panels show at most +- this many half turns [pi rad]; few trajectories leave them
-TARGET = "#c8c8c8"  # light enough that lines on it stand out
-STYLES = {0: (VERMILLION, (0, (3, 1))), 1: (BLUE, "-")}  # success: colour, line; those that succeed are on top
+MOST_TURNS = 2.3  # largest angle in the panels [half turns of pi rad]; few trajectories exceed it
+TARGET = "#c8c8c8"  # light, so that lines stand out
+STYLES = {0: (VERMILLION, (0, (3, 1))), 1: (BLUE, "-")}  # success: colour and line style; successes are drawn last
 
 OURS = "efficient"
-# The published methods that are drawn: at most four, the same for each task. The others are in the published table.
+# Published methods in the figures: the same for each task, at most four. The table of published returns has further
+# methods.
 DRAWN = ("MR.Q", "DreamerV3", "DrQ-v2", "Dreamer v1")
-MARKER_DISTANCE = 0.12  # along a curve, of the diagonal of the axes
+MARKER_DISTANCE = 0.12  # distance between markers along a curve, in diagonals of the axes
 
 
 def half_turns_text(count):
-    """An angle of so many half turns, as a label."""
+    """Label for an angle of `count` half turns."""
     return {0: "0", 1: "$\\pi$", -1: "$-\\pi$"}.get(count, "$%d\\pi$" % count)
 
 
 def draw_trajectories(options):
-    """One panel for each number of frames, all with the same axes, and a legend below."""
+    """Draws a panel for each number of frames, all with the same axes, and a legend below."""
     table = read_table(options.file)
     table["turns"] = table.angle_rad / math.pi
     panels = list(table.groupby("frames"))
@@ -40,7 +41,8 @@ def draw_trajectories(options):
         grid = figure.add_gridspec(num_rows + 1, num_columns, height_ratios=[1.0] * num_rows + [0.001])
         for k, (frames, of_frames) in enumerate(panels):
             axes = figure.add_subplot(grid[divmod(k, num_columns)])
-            for target in range(-3, 4, 2):  # all of them upright
+            # The pendulum is upright at each of these angles.
+            for target in range(-3, 4, 2):
                 axes.axhspan(target - SUCCESS_LIMIT, target + SUCCESS_LIMIT, color=TARGET, linewidth=0, zorder=0)
             for success, (colour, style) in STYLES.items():
                 for _, run in of_frames[of_frames.success == success].groupby("seed"):
@@ -62,7 +64,7 @@ def draw_trajectories(options):
 
 
 def draw_task(options):
-    """Ours on top; robot time on the upper edge."""
+    """Draws the returns of published methods and ours, with ours on top. The upper axis shows robot time."""
     task, step_s = SUITE[options.task]
     published = read_table(package_path("results", "published", "suite_returns.csv"))
     ours = returns(options.table)

@@ -1,4 +1,4 @@
-# Why a task is not learned: errors of features and predictions on the trial after, and whether the goal was seen.
+# study diagnose: shows why a task is not learned, by errors of features and predictions on the next trial.
 # SPDX-License-Identifier: BSD-3-Clause
 import collections
 import glob
@@ -27,16 +27,18 @@ which that model was not trained on:
 Writes a row for each of these and each joint, with the median and the 90 % quantile."""
 
 STEPS = (1, 5, 15)
-BATCH = 1000  # features compared at a time
-NEAR = {"rad": math.radians(20.0), "m": 0.1}  # of the goal
+BATCH = 1000  # features that are compared at a time
+NEAR = {"rad": math.radians(20.0), "m": 0.1}  # largest distance of a frame that counts as near the goal
 COLUMNS = ["task", "seed", "frames", "part", "steps", "joint", "unit", "median", "quantile_90", "share"]
 
-# One recorded episode. images: grey values [N x size x size]. torques [N x torque_dim, N m]. positions [N x joints].
+# One recorded episode. images: grey values  [N x size x size]. torques: [N x torque_dim, N m]. positions: [N x joints,
+# rad or m].
 Episode = collections.namedtuple("Episode", "images torques positions")
 
 
 class Joints:
-    """What a plant says of its positions. names, columns of a trajectory.csv, units; goal: their values there."""
+    """Joints of a plant. names, columns (in trajectory.csv), units: of each joint. goal: position of each joint at the
+    goal."""
 
     def __init__(self, plant):
         facts = describe_plant(simulator(plant))
@@ -48,18 +50,19 @@ class Joints:
                 plant, " or ".join(NEAR), ", ".join(self.units)))
 
     def distances(self, a, b):
-        """Of positions a to positions b, angles around the circle  [.. x joints]."""
+        """Distance of each joint between the positions a and b, for angles the short way round  [.. x joints]."""
         difference = np.abs(a - b)
         circular = np.array([unit == "rad" for unit in self.units])
         return np.where(circular, np.abs((difference + math.pi) % (2.0 * math.pi) - math.pi), difference)
 
     def share_near_goal(self, positions):
+        """Share of positions [N x joints] whose joints are all near the goal."""
         limits = np.array([NEAR[unit] for unit in self.units])
         return np.mean(np.all(self.distances(positions, self.goal) < limits, axis=1))
 
 
 def read_trial(run, trial, joints):
-    """The Episodes of a trial."""
+    """Reads all Episodes of a trial."""
     first, episodes = os.path.join(run, "trial_%03d" % trial), []
     for folder in [first] + sorted(glob.glob(os.path.join(first, "episode_*"))):
         images, path = recorded_images(os.path.join(folder, "trial.bag")), os.path.join(folder, "torques.csv")
@@ -69,15 +72,16 @@ def read_trial(run, trial, joints):
 
 
 def nearest_positions(learned, positions, features):
-    """Of each feature, the position of the nearest feature that was learned from  [N x joints]."""
+    """For each feature, the position at the nearest feature of a training image  [N x joints]."""
     half_squares = 0.5 * np.sum(learned ** 2, axis=1)
-    nearest = [np.argmin(half_squares - some @ learned.T, axis=1)  # |a - z|^2 / 2, but for |z|^2 / 2
+    nearest = [np.argmin(half_squares - some @ learned.T, axis=1)  # |a - z|^2 / 2 without the constant |z|^2 / 2
                for some in np.array_split(features, 1 + len(features) // BATCH)]
     return positions[np.concatenate(nearest)]
 
 
 def predicted(model, episode, steps):
-    """(features predicted so many steps ahead, numbers of the images that show what happened) of an episode."""
+    """Predicts features `steps` ahead from each frame of an episode. Returns (predicted features, indices of the images
+    that were recorded then)."""
     n, memory = model.options["order"], model.options["order"] + model.options["delay"]
     starts = range(memory - 1, len(episode.images) - steps)
     features = model.encode(episode.images)
@@ -87,7 +91,7 @@ def predicted(model, episode, steps):
 
 
 def diagnose(run):
-    """Rows of COLUMNS of a finished run folder."""
+    """Diagnoses a finished run folder. Returns rows of COLUMNS. Raises Failure if the run has fewer than two models."""
     plant, seed = (read_setting(run, "experiment", name, name) for name in ("plant", "seed"))
     joints = Joints(plant)
     last = len(glob.glob(os.path.join(run, "trial_*", "model.ddm"))) - 1
@@ -111,7 +115,8 @@ def diagnose(run):
             scale, shown = (180.0 / math.pi, "deg") if unit == "rad" else (1.0, unit)
             rows.append([plant, seed, len(positions), "prediction" if steps else "features", steps, name, shown,
                          scale * np.median(column), scale * np.quantile(column, 0.9), ""])
-    if not read_yaml(os.path.join(run, "config.yaml"))["plant"].get("goal_site"):  # a goal that is drawn in each trial
+    # Plants with goal_site draw another goal in each trial.
+    if not read_yaml(os.path.join(run, "config.yaml"))["plant"].get("goal_site"):
         rows.append([plant, seed, len(positions), "goal", "", "all", "", "", "", joints.share_near_goal(positions)])
     return rows
 

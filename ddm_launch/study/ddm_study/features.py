@@ -1,4 +1,4 @@
-# Draws features and decoded images: the plane of a model, predicted images, and the pendulum's space with a plan.
+# Draws features and decoded images: feature planes, predicted images, and the pendulum's plan in feature space.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 
@@ -13,18 +13,18 @@ from ddm_model.model_data import grey
 from ddm_study.results import read_table
 
 SETS = {"training": ("o", VERMILLION, "training frames"), "held_out": ("^", YELLOW, "held-out frames")}
-# kind: marker, size [pt^2], colour, in the order of drawing. The colours are those of the paper's figure.
+# kind: marker, size [pt^2] and colour, in the order of drawing. The colours are those of the paper's figure.
 KINDS = {"experience": ("o", 6, GREEN), "goal": ("*", 190, VERMILLION), "plan": ("^", 14, YELLOW), "current": ("s", 32, SKY)}
-OUTSIDE = "#333333"  # where there are features and no images
+OUTSIDE = "#333333"  # colour of the area around the decoded images
 
 
 def decode(path, features):
-    """One grey image for each feature, by the model in a file."""
+    """Decodes features with a model file. Returns one grey image per feature."""
     return grey(load(path).decode(features))
 
 
 def draw_plane(options):
-    """One panel per folder."""
+    """Draws the feature plane of each folder in a panel."""
     width = COLUMN_WIDTH if len(options.folders) == 1 else PAGE_WIDTH
     with new_figure(width, width / len(options.folders) + 0.35) as figure:
         grid = figure.add_gridspec(2, len(options.folders), height_ratios=[1.0, 0.001])
@@ -44,7 +44,8 @@ def draw_plane(options):
 
 
 def draw_strip(options):
-    """True images above, those of the model below; the first column is the frame from which it predicts."""
+    """Draws true images, and below them the model's reconstruction and predictions. The first column shows the frame
+    from which the model predicts."""
     strip = read_table(options.folder, "strip.csv")
     features = [name for name in strip if name.startswith("z_")]
     states = strip.drop(columns=features + ["steps"])
@@ -65,7 +66,7 @@ def draw_strip(options):
 
 
 def draw_space(options):
-    """The grid over [-1, 1]^2 as in the paper; the axes reach further where a feature lies outside."""
+    """Draws the grid over [-1, 1]^2 as in the paper. The axes extend further if a feature lies outside."""
     space = read_table(options.file)
     grid = FeatureGrid((-1.0, -1.0), (1.0, 1.0))
     with new_figure(COLUMN_WIDTH, COLUMN_WIDTH + 0.05) as figure:
@@ -88,7 +89,7 @@ def draw_space(options):
 
 
 def titled(text):
-    """TITLE=DIR as (title, folder)."""
+    """Parses TITLE=DIR. Returns (title, folder)."""
     title, _, folder = text.rpartition("=")
     return title, folder
 

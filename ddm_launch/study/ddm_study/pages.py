@@ -1,4 +1,4 @@
-# Fills marked blocks of pages with numbers of the committed tables.
+# study pages: fills marked blocks of pages with numbers from the committed tables.
 # SPDX-License-Identifier: BSD-3-Clause
 import glob
 import os
@@ -23,7 +23,8 @@ Fills the marked blocks of pages with numbers of ddm_launch/results. A block is
 The text is an f-string of Python. Its expressions read tables below results by table(FILE), a data frame of pandas;
 ddm_launch/study/ddm_study/pages.py has the other functions, such as of(FILE, ROWS), which gives '48 of 50'."""
 BLOCK = re.compile(r"(<!-- fill\n(.*?)\n-->\n\n).*?(\n\n<!-- filled -->)", re.DOTALL)
-# What the variants in efficient/ablation and efficient/tried are. The first two mean other values in the folder tried.
+# Descriptions of the variants in efficient/ablation and efficient/tried. The first two have other values in the folder
+# tried.
 TRIED_LABELS = {"auto_encoder_widths": "a wider auto-encoder", "starts": "6 starts"}
 LABELS = {"auto_encoder_widths": "the paper's auto-encoder", "blur": "no blur", "cost": "the paper's cost and horizon",
           "delay": "no choice of the delay", "epsilon": "the paper's share of random torques",
@@ -36,21 +37,23 @@ LABELS = {"auto_encoder_widths": "the paper's auto-encoder", "blur": "no blur", 
 
 
 def plus_minus(mean, error, digits=2, sign=False):
+    """Formats a mean and its standard error, with a minus sign in place of a hyphen."""
     return (("%+.*f ± %.*f" if sign else "%.*f ± %.*f") % (digits, mean, digits, error)).replace("-", "−")
 
 
 def table_row(*cells):
+    """Row of a Markdown table."""
     return "| %s |" % " | ".join(map(str, cells))
 
 
 class Functions:
-    """The functions of expressions; paths are relative to a folder of results."""
+    """Functions that expressions in pages can use. Paths are relative to a folder of results."""
 
     def __init__(self, folder):
         self._folder = folder
 
     def path(self, name):
-        """In that folder; the published results are committed only."""
+        """Path of a file in the folder of results. The published results exist only among the committed ones."""
         return os.path.join(package_path("results") if name.startswith("published/") else self._folder, name)
 
     def table(self, name):
@@ -60,41 +63,42 @@ class Functions:
         return success_rates(read_trials(self.path(name)))
 
     def of(self, name, rows="", holds="success > 0"):
-        """Of how many rows something holds, as '48 of 50'."""
+        """Number of rows that satisfy a condition, as '48 of 50'. rows: condition that selects the rows to count."""
         table = self.table(name)
         table = table.query(rows) if rows else table
         return "%d of %d" % (len(table.query(holds)), len(table))
 
     def value(self, name, rows, column):
-        """The cell of the only row of which something holds."""
+        """Value in a column of the only row that satisfies a condition."""
         return self.table(name).query(rows)[column].item()
 
     def rows(self, name, text):
-        """A line for each row, in which {COLUMN} is the row's value."""
+        """Formats each row as a line of text, in which {COLUMN} is replaced by the row's value."""
         return "\n".join(text.format(**row) for row in self.table(name).to_dict("records"))
 
     def minutes(self, method):
-        """Of each seed, until the tenth policy of PILCO is learned."""
+        """Training time of each seed until the tenth policy of PILCO [min]."""
         return self.table("paper/%s/trials.csv" % method).query("trial < 10").groupby("seed").train_s.sum() / 60.0
 
     def paper_difference(self):
-        """Success of the preset `paper` less that of the paper, in standard errors of the paper."""
+        """Success rate of the preset `paper` minus that of the paper, in standard errors of the paper."""
         paper = self.table("published/success_rate.csv").set_index("frames")
         return ((self.rates("paper/trials.csv").rate - paper.ddm_mpc) / paper.ddm_mpc_se).loc[100:].dropna()
 
     def nuisances(self, rows):
-        """Of how many models under all nuisances the evaluation succeeds."""
+        """Number of successful evaluations over all disturbances, as '48 of 50'."""
         tables = [self.table(path).query(rows) for path in results.variants(self.path("efficient/nuisances")).values()]
         return "%d of %d" % (sum(table.success.sum() for table in tables), sum(map(len, tables)))
 
     def each_nuisance(self, *frames):
-        """A row for each nuisance, with its successes after these numbers of images."""
+        """Table rows with the successes under each disturbance after these numbers of images."""
         return "\n".join(table_row(name.replace("_", " "), *(self.of(path, "frames == %d" % count) for count in frames))
                          for name, path in results.variants(self.path("efficient/nuisances")).items())
 
     def variants(self, kind, *frames):
-        """A row for each variant of a preset, with differences of success and p-values at these frames; those that harm most
-        at the first number of frames and over all later ones come first."""
+        """Table rows of all variants of a preset, with differences of success rates and p-values at these frames. Rows
+        are sorted by the sum of the differences at the first number of frames and over all later ones; the most harmful
+        variants come first."""
         table = results.differences(self.path("efficient/" + kind), self.path("efficient/ablation/preset/trials.csv"))
         labels = dict(LABELS, **TRIED_LABELS) if kind == "tried" else LABELS
         drawn = table[table.frames.isin((table.frames.iloc[0], table.frames.iloc[-1]))]
@@ -106,7 +110,8 @@ class Functions:
         return "\n".join(lines)
 
     def schedules(self):
-        """Rows of each measure of the training schedules, with differences from joint training, paired by seed."""
+        """Table rows with several measures of the training schedules, and differences from joint training, paired by
+        seed."""
         folder = self.path("paper")
         pendulum, tile = (results.predictions(folder, plant) for plant in ("pendulum", "tile"))
         lines = []
@@ -121,7 +126,8 @@ class Functions:
         return "\n".join(lines)
 
     def solvers(self):
-        """Rows of L-BFGS, which the preset has, and BFGS, which the paper names, on the models that both have."""
+        """Table rows that compare L-BFGS (the preset's solver) and BFGS (the paper's solver) on the models that both
+        have trained."""
         tables = {"L-BFGS": self.table("paper/trials.csv"), "BFGS": self.table("paper/bfgs/trials.csv")}
         both = tables["BFGS"].set_index(["seed", "frames"]).index
         lines = []
@@ -134,13 +140,14 @@ class Functions:
         return "\n".join(lines)
 
     def names(self):
-        """{name: function} of all of them."""
+        """Dictionary {name: function} of all functions."""
         public = {name: getattr(self, name) for name in dir(self) if not name.startswith("_")}
         return dict(public, mean_and_error=mean_and_error, plus_minus=plus_minus)
 
 
 def filled(text, functions, is_partial=False):
-    """A page with its blocks filled. is_partial: a block whose tables are missing says so."""
+    """Fills the blocks of a page and returns the text. is_partial: a missing table is reported in its block and not
+    raised."""
     def fill(match):
         try:
             content = eval('f"""%s"""' % match.group(2), functions.names())
@@ -153,7 +160,7 @@ def filled(text, functions, is_partial=False):
 
 
 def marked_pages():
-    """Paths of all pages with a block."""
+    """Paths of all pages with a marked block."""
     checkout = os.path.join(package_path(), "..")
     found = []
     for path in sorted(glob.glob(os.path.join(checkout, "**", "*.md"), recursive=True)):
@@ -169,7 +176,7 @@ def work(options):
             text = stream.read()
         try:
             new = filled(text, Functions(options.results or package_path("results")), bool(options.results))
-        except Exception as error:  # whatever an expression raises
+        except Exception as error:  # expressions can raise anything
             raise Failure("%s: a block cannot be filled (%s: %s): correct its expression" % (
                 path, type(error).__name__, error)) from error
         if options.results:

@@ -1,4 +1,4 @@
-# The subcommands of study.
+# study: subcommands that make and check the committed results.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 
@@ -21,12 +21,13 @@ FIGURES = {"angle_trajectories": curves.TRAJECTORIES, "feature_plane": features.
 
 
 def reproduce(options):
+    """Replaces this process by make with the rules of the study. Raises Failure if make is missing."""
     os.makedirs(options.out, exist_ok=True)
     words = ["make", "-f", package_path("study", "Makefile"), "-C", options.out, *options.goals]
     words += ["JOBS=%d" % options.jobs] if options.jobs else []
     words += ["--dry-run"] if options.dry_run else []
     try:
-        os.execvp(words[0], words)  # make is then the process that a signal ends
+        os.execvp(words[0], words)  # make replaces this process, so that signals reach make
     except FileNotFoundError:
         raise Failure("the program make is missing: install the package make") from None
 

@@ -1,4 +1,4 @@
-# Numbers behind the figures and pages: from the rows of all seeds to differences, predictions and returns.
+# Computes the numbers in figures and pages from the rows of all seeds: differences, predictions and returns.
 # SPDX-License-Identifier: BSD-3-Clause
 import glob
 import os
@@ -12,9 +12,10 @@ from ddm_launch import tables
 from ddm_launch.averages import holm, mean_and_error, sign_test
 from ddm_launch.command import Failure
 
-SCHEDULES = ("joint", "sequential", "v_p_only", "joint_random_init")  # of training/schedule
-LATE_FRAMES = (900, 1500)  # the paper's curve is level over these
-# Tasks of the DeepMind Control Suite: name there, and a physics frame [s]. An image is PHYSICS_FRAMES of them.
+SCHEDULES = ("joint", "sequential", "v_p_only", "joint_random_init")  # values of training/schedule
+LATE_FRAMES = (900, 1500)  # range of frames in which the paper's curve is level
+# Tasks of the DeepMind Control Suite: name in the suite, and duration of a physics step [s]. There are PHYSICS_FRAMES
+# steps between two images.
 SUITE = {"suite_pendulum": ("pendulum_swingup", 0.02), "suite_reacher": ("reacher_easy", 0.02),
          "suite_reacher_hard": ("reacher_hard", 0.02), "suite_cartpole": ("cartpole_swingup", 0.01),
          "suite_acrobot": ("acrobot_swingup", 0.01)}
@@ -22,32 +23,36 @@ PHYSICS_FRAMES = 5
 
 
 def read_table(*names):
-    """A CSV file. Raises Failure, which names it, if it cannot be read."""
+    """Reads a CSV file. Raises Failure with the name of the file if it cannot be read."""
     return tables.read_table(os.path.join(*names), remedy="make it by `study reproduce`")
 
 
 def recorded_images(bag):
-    """The grey images of a recorded trial, as the learner got them  [N x size x size]. Raises Failure, which names the bag,
-    if it cannot be read."""
+    """Reads the grey images of a recorded trial, as the learner got them  [N x size x size]. Raises Failure with the
+    name of the bag if it cannot be read."""
     try:
         with rosbag.Bag(bag) as recording:
             return np.array([np.frombuffer(message.data, np.uint8).reshape(message.height, message.width)
                              for topic, message, _ in recording.read_messages() if topic.endswith("image_raw")])
-    except Exception as error:  # rosbag has a dozen types for what is damaged, and takes others from Python
+    # rosbag raises a dozen types of exceptions for damaged bags, some of them from Python's library.
+    except Exception as error:
         raise Failure("%s cannot be read (%s): `rosbag check` tells whether it is damaged" % (bag, error)) from error
 
 
 def variants(folder):
-    """{name: path of its trials.csv} of the folders in a folder, by name."""
+    """Finds the variants in a folder. Returns {name: path of its trials.csv}, sorted by name."""
     paths = sorted(glob.glob(os.path.join(folder, "*", "trials.csv")))
     return {os.path.basename(os.path.dirname(path)): path for path in paths}
 
 
 def differences(folder, reference):
-    """What each variant in a folder changes of the success rate of the reference, a trials.csv, paired by seed.
+    """Differences between the success rate of each variant in a folder and that of the reference (a trials.csv), paired
+    by seed.
 
-    Columns variant, frames, seeds, difference, se, p of the sign test, and p_holm over all variants at these frames. Frames
-    are single numbers, then the mean over all that each variant has ("100 to 400") and over all but the first.
+    Returns a table with the columns variant, frames, seeds, difference, se, p (sign test), and p_holm over all variants
+    at these frames. The column frames has single numbers, then the mean over all numbers that each variant has ("100 to
+    400"), then the mean over all but the first. Raises Failure if the variants have no frames in common with the
+    reference.
     """
     success = {name: read_table(path).pivot(index="frames", columns="seed", values="success")
                for name, path in variants(folder).items() if not os.path.samefile(path, reference)}
@@ -69,14 +74,15 @@ def differences(folder, reference):
 
 
 def returns(path):
-    """Mean return of the greedy episodes after each number of frames  [frames: mean, se]."""
+    """Mean return of the evaluations after each number of frames. Returns a table with the index frames and the columns
+    mean and se."""
     groups = read_table(path).groupby("frames")["return"]
     return pandas.DataFrame({frames: mean_and_error(list(group)) for frames, group in groups}, index=["mean", "se"]).T
 
 
 def predictions(folder, plant):
-    """Predictions of each schedule, of the seeds that all schedules have: {column: table [steps, seed: schedule ...]} of
-    ratio, rmse over that of repeating the last frame, and position_r2."""
+    """Prediction errors of each schedule, for the seeds that all schedules have. Returns {column: table [(steps, seed)
+    x schedule]} of the columns ratio (rmse divided by the rmse of repeating the last frame) and position_r2."""
     found = {name: read_table(folder, plant + "_predictions", name, "predictions.csv").set_index(["steps", "seed"])
              for name in SCHEDULES}
     return {"ratio": pandas.DataFrame({name: table.rmse / table.rmse_repeat for name, table in found.items()}).dropna(),
@@ -84,7 +90,7 @@ def predictions(folder, plant):
 
 
 def late_success(folder):
-    """Mean success over LATE_FRAMES of the seeds that all schedules have  [seed: schedule ...]."""
+    """Mean success over LATE_FRAMES, for the seeds that all schedules have  [seed x schedule]."""
     found = {name: read_table(folder, "" if name == "joint" else name, "trials.csv") for name in SCHEDULES}
     return pandas.DataFrame({name: table[table.frames.between(*LATE_FRAMES)].groupby("seed").success.mean()
                              for name, table in found.items()}).dropna()

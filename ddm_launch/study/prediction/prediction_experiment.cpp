@@ -1,4 +1,4 @@
-// prediction_experiment: how well a model predicts frames that it was not trained on (Sec. 4.1).
+// prediction_experiment: measures how well a model predicts held-out images (paper, Sec. 4.1).
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_common/option_checks.h>
 #include <ddm_common/param_value.h>
@@ -34,19 +34,20 @@ constexpr char kAbout[] =
     "usage: rosrun ddm_launch prediction_experiment --preset paper --plant moving_tile --seed 1\n"
     "                                               --out DIR";
 
-constexpr int kTrainingSamples = 501;  // the paper has 601 in all
-constexpr int kHeldOutSamples = 100;   // after them, not learned from
-constexpr int kMaxSteps = 8;           // longest prediction
+constexpr int kTrainingSamples = 501;  // the paper has 601 samples in total
+constexpr int kHeldOutSamples = 100;   // samples after the training samples, for the test
+constexpr int kMaxSteps = 8;           // longest prediction [steps]
 
-/// A random trial: what a learner sees, and the true states behind it.
+/// A random trial: training and held-out samples, and the true states.
 struct Recording {
   DataSet training;
   DataSet held_out;
-  Eigen::MatrixXd states;     ///< of all frames            [stateDim() x N]
-  Eigen::MatrixXd positions;  ///< visiblePosition() of all  [. x N]
+  Eigen::MatrixXd states;     ///< true states of all samples      [stateDim() x N]
+  Eigen::MatrixXd positions;  ///< visiblePosition() of all samples   [. x N]
 };
 
-/// Training and held-out samples in one go: uniformly random torques from a random initial state.
+/// Records training and held-out samples in one trial with uniformly random torques, from a random
+/// initial state.
 Recording record(const Configuration& all) {
   Environment environment(makePlant(*all.plant), all.camera);
   const Plant& plant = environment.plant();
@@ -66,7 +67,7 @@ Recording record(const Configuration& all) {
   return out;
 }
 
-/// [1, x_i, x_i x_j (i <= j)] of each sample.
+/// Monomials up to degree two of each sample: [1, x_i, x_i x_j (i <= j)].
 Eigen::MatrixXd monomials(const Eigen::MatrixXd& x) {
   const Eigen::Index n = x.rows();
   Eigen::MatrixXd out(1 + n + n * (n + 1) / 2, x.cols());
@@ -79,11 +80,13 @@ Eigen::MatrixXd monomials(const Eigen::MatrixXd& x) {
   return out;
 }
 
-/// How much the features say about the position of the moving part, if they may be a bent map of it:
-/// a quadratic map from features to positions is fitted to the training samples, and the result is
-/// its R^2 = 1 - sum |y - fit(x)|^2 / sum |y - mean(y)|^2 on the held-out ones; 1 is perfect.
+/// Measures how well the features determine the position of the moving part, up to a quadratic map.
+/// The map is fitted to the training samples. The result is computed on the held-out samples; 1 is
+/// perfect:
+///
+///   R^2 = 1 - sum |y - fit(x)|^2 / sum |y - mean(y)|^2
 /// @param x  features of all samples, one per column
-/// @param y  positions of all samples
+/// @param y  positions of all samples, one per column
 double positionR2(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y) {
   const Eigen::MatrixXd coefficients = monomials(x.leftCols(kTrainingSamples))
                                            .transpose()
@@ -107,7 +110,7 @@ std::string featuresCsv(const PlantInfo& plant, const Recording& recording,
   return text;
 }
 
-/// The prediction from the middle of the held-out frames, of those that have a full history.
+/// A rollout that starts in the middle of the held-out samples with a full history, as CSV.
 std::string stripCsv(const PlantInfo& plant, const Recording& recording, const Ddm& model,
                      const Eigen::MatrixXd& Z) {
   const Eigen::Index memory = model.options().memory();
@@ -136,7 +139,7 @@ void run(const Configuration& all) {
   RunFolder folder(all);
   for (const std::string& warning : folder.warnings()) std::cout << "warning: " << warning << "\n";
   const Recording recording = record(all);
-  folder.begin();  // nothing is left that could refuse
+  folder.begin();  // all checks have passed
   ModelInfo info;
   info.seed = static_cast<std::uint64_t>(all.experiment.seed);
   info.config = toText(all.model);
@@ -174,7 +177,7 @@ void run(const Configuration& all) {
             << " steps ahead: " << folder.path() << "\n";
 }
 
-/// @return false where --help was asked for and has been printed
+/// @return false if the only option is --help, whose text has been printed
 bool configure(int argc, char** argv, Configuration* all) {
   Arguments arguments;
   if (!parseCommandLine(argc, argv, commonOptions(kAbout, &arguments))) return false;

@@ -1,4 +1,4 @@
-# Writes a model as one file of NumPy arrays.
+# export: writes the arrays of a model file into a NumPy file.
 # SPDX-License-Identifier: BSD-3-Clause
 import argparse
 import io
@@ -11,7 +11,11 @@ from ddm_model.plain_file import write_file
 
 
 def export(model, out):
-    """Writes the arrays of a model file to a .npz file, which appears under its name when it is complete."""
+    """Writes the arrays of a model file to a .npz file and returns them. The .npz file gets its name when it is
+    complete.
+
+    Raises OSError if one of the files cannot be read or written.
+    """
     arrays = load(model).arrays
     stream = io.BytesIO()
     np.savez(stream, **arrays)

@@ -1,17 +1,19 @@
-# The background of a feature plane: a grid of features, and at each the image that the model decodes from it.
+# Draws the background of a feature plane: a grid of features with the image that the model decodes from each feature.
 # SPDX-License-Identifier: BSD-3-Clause
 from matplotlib.ticker import MaxNLocator
 import numpy as np
 
 GRID = 9  # images along each axis, as in the paper
-DARKEST, BRIGHTEST = 0.0, 0.75  # grey of an image's 0 and 1: features drawn in light and in full colours stand out
-LEVELS = 32  # of grey: the eye sees no more in images as small as these, and the file is half as large
+# Greys that stand for 0 and 1 in an image. Features drawn in light or saturated colours stand out against this range.
+DARKEST, BRIGHTEST = 0.0, 0.75
+# Number of grey levels. More levels are not visible in such small images, and the file is half as large.
+LEVELS = 32
 
 
 class FeatureGrid:
-    """GRID x GRID features, evenly spaced over [low_1, high_1] x [low_2, high_2], ends included.
+    """GRID x GRID features, evenly spaced over [low_1, high_1] x [low_2, high_2], including the ends.
 
-    Each image is drawn around its feature, so that the picture reaches half a step beyond the ends.
+    Each decoded image has its feature in the middle, so the whole drawing extends half a step beyond the ends.
     """
 
     def __init__(self, low, high):
@@ -20,18 +22,19 @@ class FeatureGrid:
 
     @property
     def features(self):
-        """All (z_1, z_2), row by row from the top left as one reads."""
+        """All features (z_1, z_2), row by row from the top left  [GRID^2]."""
         return [(z_1, z_2) for z_2 in self.z_2[::-1] for z_1 in self.z_1]
 
     @property
     def extent(self):
-        """(left, right, bottom, top) of the picture."""
+        """Limits of the drawing: (left, right, bottom, top)."""
         half_1 = (self.z_1[1] - self.z_1[0]) / 2.0
         half_2 = (self.z_2[1] - self.z_2[0]) / 2.0
         return self.z_1[0] - half_1, self.z_1[-1] + half_1, self.z_2[0] - half_2, self.z_2[-1] + half_2
 
     def draw(self, axes, images):
-        """Draws the images of the features. The scales of the axes differ if the ranges do: the images stay square."""
+        """Draws the decoded images of the features. The images stay square even if the ranges of the two axes
+        differ."""
         images = [np.asarray(image) for image in images]
         rows = [np.hstack(images[GRID * row:GRID * (row + 1)]) for row in range(GRID)]
         levels = np.vstack(rows) // (256 // LEVELS) / (LEVELS - 1.0)

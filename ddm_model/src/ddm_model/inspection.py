@@ -1,4 +1,4 @@
-# Reports how good a model is, by itself and on bags, and what to do if it is not.
+# inspect: reports the quality of a model, alone and on bags, with a remedy for each problem.
 # SPDX-License-Identifier: BSD-3-Clause
 import argparse
 import os
@@ -13,7 +13,7 @@ from ddm_model.model_data import ModelData, ModelDataError
 from ddm_model.plain_file import write_file
 from ddm_model.verdict import summary, verdict
 
-# Shorthands for keys of the block data_set, see read_bags.
+# Shorthands for keys of the block data_set, which the program read_bags reads.
 DATA_SET_OPTIONS = (
     ("--image-topic", "TOPIC", "sensor_msgs/Image or CompressedImage, also without /compressed"),
     ("--torque-topic", "TOPIC", "ddm_msgs/Torque, std_msgs/Float64, Float32 or arrays of them, geometry_msgs/WrenchStamped, "
@@ -28,19 +28,20 @@ def say(text):
 
 
 def facts_of(model):
-    """What is written in the model itself."""
+    """Facts that the model file itself contains."""
     max_torque = model.options["max_torque"].tolist()
     facts = {**model.info, "image_size": model.image_size, "torque_dim": model.torque_dim,
              "goal": model.goal_feature is not None,
              "options": {**model.options, "max_torque": max_torque if len(max_torque) > 1 else max_torque[0]}}
-    facts["config"] = facts.pop("config")  # last: it is long
+    facts["config"] = facts.pop("config")  # the longest value comes last
     return facts
 
 
 def facts_table(data, path):
+    """HTML table with the facts of a model and the units of its errors."""
     facts = {"file": path, **facts_of(data.model)}
     facts.update(facts.pop("options"))
-    del facts["config"]  # a section of its own
+    del facts["config"]  # the configuration has its own section
     values = max(facts["frames"], 1) * facts["image_size"] ** 2
     for name in ("v_r", "v_p"):
         facts[name] = "%.4g grey²: %.3g grey a pixel, within the principal components" % (
@@ -56,7 +57,7 @@ def bags_table(data):
 
 
 def figures_of(data):
-    """(title, function that draws, caption), in the order of the report."""
+    """List of (title, function that draws the figure, caption), in the order of the report."""
     out = [("Principal components", lambda: report_figures.draw_spectrum(data),
             "How much each component matters. A curve that has not come down at its right end asks for more of them.")]
     if data.bags is not None:
@@ -85,6 +86,7 @@ def figures_of(data):
 
 
 def build_page(data, path):
+    """Returns (HTML page of the report, checks)."""
     checks = verdict(data)
     sections = ["<h2>Verdict</h2>", report.verdict_table(checks)]
     if data.bags is None:
@@ -108,7 +110,10 @@ def build_page(data, path):
 
 
 def inspect(path, bags, out, steps, options):
-    """Writes the report of a model file and the numbers behind it into a folder. Returns the checks."""
+    """Writes the report of a model and its tables into a folder. Returns the checks.
+
+    Raises ModelDataError if a bag cannot be read, OSError if a file cannot be read or written.
+    """
     data = ModelData(load(path), bags, steps, options, say)
     page, checks = build_page(data, path)
     os.makedirs(out, exist_ok=True)

@@ -1,4 +1,4 @@
-# A model file in NumPy: what is in it, and what the model computes.
+# Class Model: reads a model file and computes features, decoded images and predictions with NumPy.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import struct
@@ -6,22 +6,22 @@ import zlib
 
 import numpy as np
 
-MAGIC, HEADER = b"DDMMODEL", "<IQI"  # version, bytes of content, CRC-32
-VERSION = 5  # of the format
+MAGIC, HEADER = b"DDMMODEL", "<IQI"  # after MAGIC: version, size of the content [bytes], CRC-32
+VERSION = 5  # version of the file format
 
 
 class ModelFileError(OSError, ValueError):
-    """The file is not a model, or it is damaged. An OSError, as every other reason why it cannot be read."""
+    """The file is not a model, or it is damaged. Derives from OSError, like all other failures to read a file."""
 
 
 class _Reader:
-    """Numbers in the order in which model_file.cpp writes them."""
+    """Reads numbers in the order in which model_file.cpp writes them."""
 
     def __init__(self, content):
         self._content, self._at = content, 0
 
     def number(self, kind):
-        """kind: a type of NumPy; little-endian as the file is."""
+        """kind: a NumPy type with little-endian byte order, as in the file."""
         return self._take(kind, 1)[0]
 
     def array(self, kind):
@@ -39,7 +39,7 @@ class _Reader:
 
 
 def _content(data):
-    """What follows the header of a model file."""
+    """Content of a model file after its header. Raises ModelFileError if header, size or checksum are wrong."""
     begin = len(MAGIC) + struct.calcsize(HEADER)
     if data[:len(MAGIC)] != MAGIC:
         raise ModelFileError("is not a DDM model (it does not begin with %s)" % MAGIC.decode())
@@ -55,7 +55,7 @@ def _content(data):
 
 
 def _read_options(reader):
-    """The block `model` of the configuration."""
+    """Reads the block `model` of the configuration."""
     options = {name: int(reader.number("<i4")) for name in ("pca_dim", "feature_dim", "order")}
     for name in ("encoder_widths", "decoder_widths", "predictor_widths"):
         options[name] = reader.array("<i4").tolist()
@@ -68,7 +68,11 @@ def _read_options(reader):
 
 
 def _blur(size, std):
-    """Each row has the weights of a Gaussian along one axis, in the model's single precision  [size x size]."""
+    """Weights of a Gaussian blur along one axis, one output pixel per row, in single precision like the model  [size x
+    size].
+
+    y_blurred = blur y blur^T for an image y. std: standard deviation of the Gaussian [pixels].
+    """
     if not std > 0.0:
         return np.eye(size, dtype=np.float32)
     distance = np.subtract.outer(np.arange(size), np.arange(size)) / std
@@ -77,17 +81,17 @@ def _blur(size, std):
 
 
 def _layers(theta, widths, name):
-    """({NAME_W1: weights [outputs x inputs], NAME_b1: biases, ...}, the parameters that are left)"""
+    """Splits parameters into ({NAME_W1: weights [outputs x inputs], NAME_b1: biases, ...}, remaining parameters)."""
     arrays = {}
     for layer, (inputs, outputs) in enumerate(zip(widths, widths[1:]), 1):
         weights, theta = np.split(theta, [inputs * outputs])
-        arrays["%s_W%d" % (name, layer)] = weights.reshape(inputs, outputs).T  # column by column
+        arrays["%s_W%d" % (name, layer)] = weights.reshape(inputs, outputs).T  # stored column by column
         arrays["%s_b%d" % (name, layer)], theta = np.split(theta, [outputs])
     return arrays, theta
 
 
 def blurred(arrays, y):
-    """Images y as the model with these arrays sees them  [N x D]."""
+    """Blurs images y as the model with these arrays does before it encodes them  [N x D]."""
     blur, size = arrays["blur"], int(arrays["image_size"])
     if np.array_equal(blur, np.eye(size)):
         return y
@@ -95,16 +99,18 @@ def blurred(arrays, y):
 
 
 class Model:
-    """A deep dynamical model. Images, features and torques have one sample in each row.
+    """A deep dynamical model (paper, eq. 3). Images, features and torques have one sample in each row.
 
-    options: the block `model` of its configuration. image_size [pixels], torque_dim [-]. info: id, seed, trial, frames, v_r,
-    v_p, feature_spread, and config, the YAML text that it was trained with. arrays: all that it computes with, under the
-    names of doc/reference/programs.md. goal_feature: z_ref, None without a goal image. support_states: features of states that it has
-    seen  [M x feature_dim].
+    options: the block `model` of the configuration. image_size: side of an image [pixels]. torque_dim: number of
+    motors.
+    info: id, seed, trial, frames (number of samples learned from), v_r, v_p, feature_spread, and config, the YAML text
+    of the configuration that the model was trained with.
+    arrays: all arrays that the model computes with, under the names in doc/reference/programs.md.
+    goal_feature: z_ref, None without a goal image. support_states: features of the support states  [M x feature_dim].
     """
 
     def __init__(self, data):
-        """data: bytes of a model file. Raises ModelFileError."""
+        """data: content of a model file (bytes). Raises ModelFileError."""
         reader = _Reader(_content(data))
         self.options = _read_options(reader)
         self.image_size, self.torque_dim = int(reader.number("<i4")), int(reader.number("<i4"))
@@ -150,7 +156,7 @@ class Model:
         return {name: np.asarray(value) for name, value in arrays.items()}
 
     def _network(self, name, a, last_linear=True):
-        """a: inputs, one sample a row."""
+        """Output of a fully connected network. a: inputs, one sample per row."""
         num_layers = sum(key.startswith(name + "_W") for key in self.arrays)
         for layer in range(1, num_layers + 1):
             a = a @ self.arrays["%s_W%d" % (name, layer)].T + self.arrays["%s_b%d" % (name, layer)]
@@ -159,10 +165,10 @@ class Model:
         return a
 
     def encode(self, images):
-        """z = g^-1(y), eq. (3a).
+        """Encoder: z = g^-1(y), eq. (3a).
 
-        images: grey values 255 y  [N x size x size] or [N x size^2]. Returns features [N x feature_dim]. Raises ValueError
-        for another number of pixels.
+        images: grey values 255 y  [N x size x size] or [N x size^2]. Returns features [N x feature_dim]. Raises
+        ValueError if the number of pixels is wrong.
         """
         images = np.asarray(images)
         if images.size != len(images) * self.image_size ** 2:
@@ -173,19 +179,21 @@ class Model:
         return self._network("encoder", scores, last_linear=False)
 
     def decode(self, features):
-        """y = g(z), eq. (3b), not clipped to [0, 1].
+        """Decoder: y = g(z), eq. (3b). The result is not limited to [0, 1].
 
-        features: [N x feature_dim]. Returns [N x size x size].
+        features: [N x feature_dim]. Returns images [N x size x size].
         """
         scores = self._network("decoder", np.asarray(features)) / self.arrays["pca_scale"]
         y = self.arrays["pca_mean"] + scores @ self.arrays["pca_basis"].T
         return y.reshape(-1, self.image_size, self.image_size)
 
     def predict(self, features, torques):
-        """z_{t+1} = f(z_t, u_t, ..., z_{t-n+1}, u_{t-n+1}), eq. (2); with a delay d the torques are u_{t-d}, ...
+        """Prediction model: z_{t+1} = f(z_t, u_t, ..., z_{t-n+1}, u_{t-n+1}), eq. (2). With a delay d the torques are
+        u_{t-d}, ...
 
         features: z_{t-n+1} ... z_t, oldest first  [... x n x feature_dim]. torques: u_{t-n+1-d} ... u_t, oldest first
-        [... x n + d x torque_dim, N m]. Returns [... x feature_dim].
+        [... x n + d x torque_dim, N m]. Returns z_{t+1}  [... x feature_dim]. Raises ValueError if the number of
+        features or torques is wrong.
         """
         features, torques = np.asarray(features, dtype=float), np.asarray(torques, dtype=float)
         n, delay = self.options["order"], self.options["delay"]
@@ -200,10 +208,10 @@ class Model:
         return features[..., -1, :] + change if self.options["residual"] else change
 
     def roll_out(self, features, torques):
-        """Features predicted one after the other, each from those before it.
+        """Rollout: predicts K features, each from the features before it.
 
-        features: as of predict(). torques: as there, and all that follow  [... x n + d - 1 + K x torque_dim, N m].
-        Returns [... x K x feature_dim].
+        features: as for predict(). torques: as for predict(), followed by the later torques
+        [... x n + d - 1 + K x torque_dim, N m]. Returns z_{t+1} ... z_{t+K}  [... x K x feature_dim].
         """
         n, memory = self.options["order"], self.options["order"] + self.options["delay"]
         features, torques = np.asarray(features, dtype=float), np.asarray(torques, dtype=float)
@@ -214,8 +222,8 @@ class Model:
 
 
 def load(path):
-    """The Model in a file. Raises OSError, or ModelFileError, which names the file."""
-    if os.path.exists(path) and not os.path.isfile(path):  # a pipe or a device may never end
+    """Reads a Model from a file. Raises OSError, or ModelFileError with the name of the file."""
+    if os.path.exists(path) and not os.path.isfile(path):  # reading a pipe or a device may never end
         raise OSError("cannot read %s: it is not a regular file" % path)
     with open(path, "rb") as stream:
         data = stream.read()

@@ -1,4 +1,4 @@
-# Applies a model to bags: features, reconstructions, predictions, their errors, and tables of them.
+# Class ModelData: applies a model to bags and computes features, reconstructions, predictions and their errors.
 # SPDX-License-Identifier: BSD-3-Clause
 import collections
 import os
@@ -11,17 +11,20 @@ import yaml
 
 from ddm_model.model import blurred
 
-BLOCK_BYTES = 1 << 23  # of the images that are computed with at a time
-MAX_STARTS = 1000  # predictions of each length: seconds, not minutes
+BLOCK_BYTES = 1 << 23  # images that are processed in one block [bytes]
+MAX_STARTS = 1000  # largest number of predictions, which limits the time to seconds
 
 
 class ModelDataError(Exception):
-    """A bag cannot be read, or is of another robot than the model."""
+    """A bag cannot be read, or belongs to a robot with another number of motors than the model."""
 
 
 def read_bags(paths, image_size, options=()):
-    """What the program read_bags finds in each bag, by name: camera, interval_s, goal, segment_sizes, notes;
-    images [N x size x size], torques [N x torque_dim, N m], times and those of what could not be paired [s]. Its errors go to our standard error.
+    """Reads bags by the program read_bags. Returns a dictionary for each bag: camera, interval_s, goal, segment_sizes,
+    notes, torque_dim, images [N x size x size], torques [N x torque_dim, N m], times of the images [s], and the times
+    of images without torque and of torques without image [s].
+
+    Raises ModelDataError if the program is missing or fails; the program prints its errors on standard error.
     """
     programs = roslib.packages.find_node("ddm_model", "read_bags")
     if not programs:
@@ -44,36 +47,37 @@ def _read_arrays(folder, image_size):
 
 
 def numbered(name, rows):
-    """{name_1: first row, name_2: second row, ...}"""
+    """Dictionary {name_1: first row, name_2: second row, ...}."""
     return {"%s_%d" % (name, i + 1): row for i, row in enumerate(rows)}
 
 
 def grey(y):
-    """Grey values 255 y of images, as a camera gives them."""
+    """Grey values 255 y of images y, rounded to bytes like the images of a camera."""
     return np.rint(255.0 * np.clip(y, 0.0, 1.0)).astype(np.uint8)
 
 
 def blocks(number, num_pixels):
-    """Slices of so many images, each of BLOCK_BYTES at most."""
+    """Slices of `number` images such that each slice has at most BLOCK_BYTES."""
     size = max(1, BLOCK_BYTES // (8 * num_pixels))
     return [slice(begin, begin + size) for begin in range(0, number, size)]
 
 
 def kept_by_pca(arrays, y):
-    """Coordinates along the principal components [grey] of blurred images y [N x D], and the images with those alone."""
+    """Projects blurred images y [N x D] on the principal components. Returns (coordinates [N x pca_dim, grey], images
+    that are reconstructed from the coordinates [N x D])."""
     coordinates = (y - arrays["pca_mean"]) @ arrays["pca_basis"]
     return coordinates, arrays["pca_mean"] + coordinates @ arrays["pca_basis"].T
 
 
-# mean_rms, pca_rms, reconstruction_rms: distance of each image, blurred, to the model's mean image, to what the principal
-# components keep of it, to its reconstruction, root mean square over pixels [grey]  [N]. share: mean square of the
-# images along each component over that of the whole images [-]  [pca_dim]. variation: root mean square over all pixels
-# and images of their distance, not blurred, to the mean of these very images [grey].
+# mean_rms, pca_rms, reconstruction_rms: distance of each blurred image to the model's mean image, to its projection on
+# the principal components, and to its reconstruction; root mean square over pixels [grey]  [N].
+# share: mean square of the images along each component, divided by the mean square of the whole images [-]  [pca_dim].
+# variation: distance of the images (not blurred) to their own mean; root mean square over all pixels and images [grey].
 ImageErrors = collections.namedtuple("ImageErrors", "mean_rms pca_rms reconstruction_rms share variation")
 
 
 def image_errors(arrays, images, reconstructions):
-    """arrays: of the model. images, reconstructions: grey values k = 255 y  [N x D]."""
+    """Computes ImageErrors. arrays: of the model. images, reconstructions: grey values 255 y  [N x D]."""
     squares, component_squares = [], 0.0
     own_mean = images.mean(axis=0) / 255.0
     for block in blocks(*images.shape):
@@ -90,7 +94,8 @@ def image_errors(arrays, images, reconstructions):
 
 
 def prediction_starts(segment_sizes, memory, steps):
-    """Frames with memory - 1 frames before and so many after them without a gap: at most MAX_STARTS, evenly spread over all."""
+    """Indices of frames that have memory - 1 frames before them and `steps` frames after them in the same segment.
+    Returns at most MAX_STARTS indices, evenly spread over all."""
     begins = np.cumsum(segment_sizes) - segment_sizes
     starts = np.concatenate([begin + np.arange(memory - 1, size - steps) for begin, size in zip(begins, segment_sizes)])
     number = min(len(starts), MAX_STARTS)
@@ -98,7 +103,10 @@ def prediction_starts(segment_sizes, memory, steps):
 
 
 def predicted_features(model, features, torques, starts, steps, told=None):
-    """Features 0, 1, ... steps ahead of frames  [starts x steps + 1 x feature_dim]. told: a torque instead of those that followed."""
+    """Rollouts of features from the frames `starts`, 0, 1, ... steps ahead  [starts x steps + 1 x feature_dim].
+
+    told: a torque that replaces the recorded torques from the start on.
+    """
     n, memory = model.options["order"], model.options["order"] + model.options["delay"]
     past, known = features[starts[:, None] + np.arange(1 - n, 1)], torques[starts[:, None] + np.arange(1 - memory, steps)]
     if told is not None:
@@ -107,8 +115,10 @@ def predicted_features(model, features, torques, starts, steps, told=None):
 
 
 def prediction_errors(model, images, starts, predicted, blind):
-    """Root mean square over the pixels of all images, blurred, 1, 2, ... steps ahead of the starts [grey]: of predictions, of
-    the image predicted to stay as it is, of predictions `blind` that were told of the mean torque  [3 x steps].
+    """Errors of rollouts 1, 2, ... steps ahead, root mean square over the pixels of all blurred images [grey]  [3 x
+    steps].
+
+    Rows: the predictions, the last image repeated, and the predictions `blind`, which were made with the mean torque.
     """
     squares, num_pixels = np.zeros((3, predicted.shape[1] - 1)), images[0].size
     for block in blocks(len(starts), num_pixels):
@@ -120,17 +130,25 @@ def prediction_errors(model, images, starts, predicted, blind):
     return np.sqrt(squares / (len(starts) * num_pixels))
 
 
-# A prediction that is shown: frame it starts from, features and images predicted 0, 1, ... steps ahead.
+# One rollout for the report: its first frame, and the features and images 0, 1, ... steps ahead.
 Prediction = collections.namedtuple("Prediction", "frame features images")
 
 
 class ModelData:
-    """A Model and its results on bags. Without bags, `bags` and the attributes after it are None, and tables is empty.
-    unpaired: {what: number of the bag and time since its first frame [s]  [2 x N]}. notes: (bag, what to know about it).
+    """A Model and its results on bags. Without bags, `bags` and the attributes after it are None, and `tables` is
+    empty.
+
+    unpaired: {kind: index of the bag and time since its first frame [s]  [2 x N]} of images and torques without a
+    partner.
+    notes: pairs (bag, remark).
     """
 
     def __init__(self, model, bags=(), steps=15, options=(), say=lambda text: None):
-        """steps: of the longest prediction. options: of read_bags. say: told what is done."""
+        """steps: length of the longest rollout. options: options of read_bags. say: function that is called with
+        progress messages.
+
+        Raises ModelDataError if a bag cannot be read or belongs to another robot.
+        """
         self.model = model
         self.bags = self.frames = self.features = self.torques = self.spectrum = self.errors = None
         self.variation = self.unpaired = None
@@ -143,7 +161,7 @@ class ModelData:
             self._predict(segment_sizes, steps, say)
 
     def _read_bags(self, paths, options):
-        """Returns the sizes of all segments and the times of all frames."""
+        """Reads all bags. Returns the sizes of all segments and the times of all frames [s]."""
         bags = read_bags(paths, self.model.image_size, options)
         for path, bag in zip(paths, bags):
             if bag["torque_dim"] != self.model.torque_dim:
@@ -179,7 +197,7 @@ class ModelData:
 
     def _predict(self, segment_sizes, steps, say):
         memory = self.model.options["order"] + self.model.options["delay"]
-        steps = max(0, min(steps, np.max(segment_sizes) - memory))  # shorter where all segments are
+        steps = max(0, min(steps, np.max(segment_sizes) - memory))  # shorter if no segment is long enough
         starts, errors = prediction_starts(segment_sizes, memory, steps), np.zeros((3, 0))
         if steps > 0:
             say("predicting %d step(s) from %d frames" % (steps, len(starts)))
@@ -192,7 +210,8 @@ class ModelData:
         self.tables["prediction_errors.csv"] = self.errors
 
     def _choose_predictions(self, starts, predicted):
-        """Those in the middle and worst by the distance of the feature predicted last to that of the image that came."""
+        """Chooses two rollouts for the report, ranked by the distance between the last predicted feature and the
+        feature of the recorded image: the median and the worst."""
         steps = np.arange(predicted.shape[1])
         ranked = np.argsort(np.linalg.norm(predicted[:, -1] - self.features[starts + steps[-1]], axis=1), kind="stable")
         shown = {"typical": ranked[len(ranked) // 2], "worst": ranked[-1]}
@@ -204,20 +223,21 @@ class ModelData:
 
     @property
     def options(self):
-        """The block `model` of its configuration."""
+        """The block `model` of the model's configuration."""
         return self.model.options
 
     @property
     def goal_feature(self):
-        """z_ref, None if the model has no goal image."""
+        """z_ref, or None if the model has no goal image."""
         return self.model.goal_feature
 
     @property
     def max_torque(self):
-        """One for each motor [N m]."""
+        """Torque limit of each motor [N m]."""
         return np.broadcast_to(self.options["max_torque"], (self.model.torque_dim,))
 
     def decode_plane(self, features):
-        """Images of features of which the first two are given. The others are the goal's, without a goal zero."""
+        """Decodes features with given first two components [N x 2]. All other components are those of the goal feature,
+        or 0 without a goal."""
         goal = np.zeros(self.options["feature_dim"]) if self.goal_feature is None else self.goal_feature
         return grey(self.model.decode(np.column_stack([features, np.tile(goal[2:], (len(features), 1))])))

@@ -1,4 +1,4 @@
-# A report as one self-contained HTML file: verdict, facts and figures.
+# Formats a report as one self-contained HTML file: verdict, facts and figures.
 # SPDX-License-Identifier: BSD-3-Clause
 import html
 
@@ -18,7 +18,7 @@ def escaped(value):
 
 
 def table(head, rows, marked=()):
-    """Everything in it is escaped. marked: numbers of the rows that stand out."""
+    """HTML table; all cells are escaped. marked: indices of highlighted rows."""
     lines = ["<table>", "<tr>%s</tr>" % "".join("<th>%s</th>" % escaped(cell) for cell in head)]
     for i, row in enumerate(rows):
         lines.append("<tr%s>%s</tr>" % (' class="failed"' if i in marked else "",
@@ -31,17 +31,18 @@ def figure(title, uri, caption):
 
 
 def verdict_table(checks):
+    """HTML table of checks. Failed checks are highlighted."""
     rows = [(MARKS[check.ok], check.name, check.figure, check.rule, "" if check.ok else check.remedy)
             for check in checks]
     marked = [i for i, check in enumerate(checks) if check.ok is False]
     head = ["", "what", "found", "should be", "what to do"]
-    if not any(row[-1] for row in rows):  # no empty column where there is nothing to do
+    if not any(row[-1] for row in rows):  # omit the last column if it is empty
         head, rows = head[:-1], [row[:-1] for row in rows]
     return table(head, rows, marked)
 
 
 def page(title, summary, failed, sections):
-    """sections: HTML that is escaped already."""
+    """Whole HTML page. sections: HTML that is already escaped."""
     return "\n".join(
         ["<!DOCTYPE html>", '<html lang="en"><head><meta charset="utf-8"><title>%s</title>' % escaped(title),
          "<style>%s</style></head><body>" % STYLE, "<h1>%s</h1>" % escaped(title),

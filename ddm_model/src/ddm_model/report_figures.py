@@ -1,11 +1,11 @@
-# The figures of a report.
+# Draws the figures of a report.
 # SPDX-License-Identifier: BSD-3-Clause
 import base64
 import io
 import os
 
 import matplotlib
-matplotlib.use("Agg")  # no display needed
+matplotlib.use("Agg")  # draws without a display
 import matplotlib.pyplot as plt  # noqa: E402
 from matplotlib.ticker import MaxNLocator  # noqa: E402
 import numpy as np  # noqa: E402
@@ -14,16 +14,16 @@ from ddm_model.feature_grid import FeatureGrid  # noqa: E402
 from ddm_model.model import blurred  # noqa: E402
 from ddm_model.model_data import kept_by_pca  # noqa: E402
 
-# From the Okabe-Ito set, which colour-blind readers can distinguish; dashes and shapes differ, too.
+# Colours of the Okabe-Ito set, which colour-blind readers can distinguish. Dashes and shapes differ, too.
 BLUE, VERMILLION, YELLOW, GREY, LIGHT = "#0072B2", "#D55E00", "#F0E442", "#666666", "#dddddd"
 WIDTH = 9.0  # [in]
-MAX_COLUMNS = 16  # images side by side
+MAX_COLUMNS = 16  # largest number of images side by side
 RECONSTRUCTIONS = 8
 BAGS = 20
 
 
 def as_data_uri(figure):
-    """A figure as text that an <img> can show; closes it."""
+    """PNG of a figure as a data URI for <img>. Closes the figure."""
     stream = io.BytesIO()
     figure.savefig(stream, format="png", dpi=110)
     plt.close(figure)
@@ -39,7 +39,8 @@ def new_axes(height, columns=1):
 
 
 def draw_spectrum(data):
-    """Variance along each principal component; with bags what share of their images it keeps."""
+    """Draws the variance along each principal component and, if there are bags, the share of their images that the
+    components keep."""
     figure, axes = new_axes(3.0, columns=1 if data.spectrum is None else 2)
     variance = data.model.arrays["pca_variance"]
     axes[0].semilogy(np.arange(1, len(variance) + 1), variance, color=BLUE, marker="o", markersize=3)
@@ -57,7 +58,7 @@ def draw_spectrum(data):
 
 
 def draw_rows(rows, labels, columns):
-    """Grey pictures in rows; labels of rows at the left, of columns above."""
+    """Draws rows of grey images. labels: text at the left of each row. columns: text above each column."""
     shape = (len(rows), len(columns))
     figure, axes = plt.subplots(*shape, figsize=(WIDTH, WIDTH / max(len(columns), 6) * len(rows) * 1.12), squeeze=False)
     for i, (row, label) in enumerate(zip(rows, labels)):
@@ -68,11 +69,12 @@ def draw_rows(rows, labels, columns):
             if i == 0:
                 axes[i, j].set_title(columns[j], fontsize=9)
         axes[i, 0].set_ylabel(label, fontsize=9, rotation=0, ha="right", va="center")
-    figure.tight_layout(pad=0.3)  # matplotlib 3.3 takes minutes for a constrained layout of so many axes
+    figure.tight_layout(pad=0.3)  # constrained layout takes minutes for so many axes in matplotlib 3.3
     return figure
 
 
 def draw_reconstructions(data):
+    """Draws some images, their projections on the principal components, and their reconstructions."""
     shown = np.unique(np.arange(RECONSTRUCTIONS) * len(data.images) // RECONSTRUCTIONS)
     images = data.images[shown]
     y = blurred(data.model.arrays, images.reshape(len(shown), -1) / 255.0)
@@ -82,7 +84,7 @@ def draw_reconstructions(data):
 
 
 def draw_prediction(data, kind):
-    """What came, what was predicted, and the last frame repeated, from 0 steps ahead on."""
+    """Draws recorded images, predicted images and the last frame repeated, from 0 steps ahead on."""
     prediction = data.predictions[kind]
     steps = len(prediction.images)
     shown = np.unique(np.linspace(0, steps - 1, min(steps, MAX_COLUMNS)).round().astype(int))
@@ -92,6 +94,7 @@ def draw_prediction(data, kind):
 
 
 def draw_errors(data):
+    """Draws the errors of rollouts over the number of steps ahead."""
     figure, (axes,) = new_axes(3.4)
     steps = data.errors["steps"]
     for column, colour, style, label in (
@@ -106,17 +109,17 @@ def draw_errors(data):
 
 
 def plane_range(data):
-    """The smallest ranges that hold the first two features of all frames, and a margin; without bags what the paper
-    shows."""
+    """(low, high): ranges of the first two features over all frames, with a margin. Without bags, [-1, 1] as in the
+    paper."""
     if data.features is None:
         return np.full(2, -1.0), np.full(2, 1.0)
     features = data.features[:, :2]
-    margin = np.maximum(0.05 * np.ptp(features, axis=0), 0.02)  # not quite a point
+    margin = np.maximum(0.05 * np.ptp(features, axis=0), 0.02)  # at least 0.02, in case all features are equal
     return features.min(axis=0) - margin, features.max(axis=0) + margin
 
 
 def draw_plane(data):
-    """Decoded images over the range of the features, and the features of all frames."""
+    """Draws decoded images over the range of the features, and the features of all frames."""
     low, high = plane_range(data)
     figure, axes = plt.subplots(figsize=(WIDTH, 6.2), constrained_layout=True)
     grid = FeatureGrid(low, high)
@@ -128,12 +131,13 @@ def draw_plane(data):
         axes.scatter(*data.goal_feature[:2], marker="*", s=190, color=VERMILLION, edgecolors="black", linewidths=0.6,
                      label="goal", zorder=3)
     if axes.get_legend_handles_labels()[0]:
-        axes.legend(loc="upper left", bbox_to_anchor=(1.02, 1.0))  # beside the images, not over them
+        axes.legend(loc="upper left", bbox_to_anchor=(1.02, 1.0))  # beside the images
     return figure
 
 
 def draw_pairing(data):
-    """When there are frames, and what could not be paired: a row for each of the bags, those first where most is missing."""
+    """Draws the times of frames, and of images and torques without a partner. Each bag has a row. If there are more
+    than BAGS bags, shows those with the most missing partners."""
     missing = sum(np.bincount(times[0].astype(int), minlength=len(data.bags["bag"])) for times in data.unpaired.values())
     bags = np.sort(np.argsort(-missing, kind="stable")[:BAGS])
     figure, (axes,) = new_axes(0.9 + 0.3 * len(bags))
@@ -153,7 +157,7 @@ def draw_pairing(data):
 
 
 def draw_coverage(data):
-    """How often each feature and each torque occurs."""
+    """Draws histograms of each feature and each torque."""
     series = [("feature $z_{%d}$ [-]" % (i + 1), column, None) for i, column in enumerate(data.features.T)]
     series += [("torque $u_{%d}$ [N m]" % (i + 1), column, limit)
                for i, (column, limit) in enumerate(zip(data.torques.T, data.max_torque))]

@@ -1,4 +1,4 @@
-# A run folder in pandas: its models, and each step of its trials and evaluations.
+# Reads a run folder into pandas: its models, and each step of its trials and evaluations.
 # SPDX-License-Identifier: BSD-3-Clause
 import collections
 import os
@@ -7,11 +7,11 @@ import re
 import pandas as pd
 import yaml
 
-# config: effective configuration, as nested dictionaries
-# trials: trials.csv, one row for each model, indexed by its trial
-# steps: one row for each step of all trials and evaluations, indexed by (kind, trial, episode, step) with kind "trial" or
-#   "evaluation": torques [N m], exploratory, and where they are known the plant's true state and the goal distance [spread of the
-#   features], with the columns of torques.csv, trajectory.csv and goal_distance.csv
+# config: effective configuration, as nested dictionaries.
+# trials: table trials.csv, one row per model, indexed by trial.
+# steps: one row per time step of all trials and evaluations, indexed by (kind, trial, episode, step), where kind is
+# "trial" or "evaluation". Columns are those of torques.csv, trajectory.csv and goal_distance.csv: torques [N m],
+# exploratory and, if known, the plant's true state and the distance to the goal [spread of the features].
 Run = collections.namedtuple("Run", "config trials steps")
 
 FOLDER = re.compile(r"(trial|evaluation)_(\d+)$")
@@ -21,15 +21,16 @@ INDEX = ["kind", "trial", "episode", "step"]
 
 
 class RunFolderError(ValueError):
-    """The folder is not one of an experiment, or a table in it is damaged."""
+    """The folder is not the run folder of an experiment, or a table in it is damaged."""
 
 
 def _read_table(path, *columns):
-    """columns: those without which it is none of ours."""
+    """Reads a CSV file. columns: required columns. Raises RunFolderError if the file cannot be read or lacks one of
+    them."""
     remedy = "give a folder that experiment.launch or run_experiment has written"
     try:
-        table = pd.read_csv(path, float_precision="round_trip")  # the numbers as they were written
-    except (OSError, ValueError) as error:  # ValueError: whatever pandas finds wrong with the contents
+        table = pd.read_csv(path, float_precision="round_trip")  # parses numbers without rounding
+    except (OSError, ValueError) as error:  # pandas raises several kinds of ValueError for invalid contents
         raise RunFolderError("cannot read %s: %s; %s" % (path, getattr(error, "strerror", None) or error, remedy)) from error
     missing = [name for name in columns if name not in table.columns]
     if missing:
@@ -50,7 +51,7 @@ def _read_config(folder):
 
 
 def _recordings(folder):
-    """(kind, trial, episode, folder) of what has its torques: an interrupted trial has none."""
+    """Yields (kind, trial, episode, folder) of each recording. Skips interrupted trials, which have no torques.csv."""
     for name in sorted(os.listdir(folder)):
         match = FOLDER.match(name)
         if not match:
@@ -76,9 +77,9 @@ def _read_steps(folder):
 
 
 def read_run(folder):
-    """The Run in a folder of experiment.launch or run_experiment, which may be under way.
+    """Reads the folder of an experiment into a Run. The experiment may still be running.
 
-    Raises RunFolderError if there is none, or if one of its tables cannot be read.
+    Raises RunFolderError if the folder is not a run folder, or if one of its tables cannot be read.
     """
     trials = _read_table(os.path.join(folder, "trials.csv"), "trial", "frames").set_index("trial")
     return Run(_read_config(folder), trials, _read_steps(folder))

@@ -1,29 +1,32 @@
-# Judges a model and bags by checks, each with what was measured, the rule and the remedy.
+# Judges a model and bags by checks. Each check has a measurement, a rule and a remedy.
 # SPDX-License-Identifier: BSD-3-Clause
 import collections
 
 import numpy as np
 
-# ok: True, False, or None where it could not be measured. figure: what was measured. rule: what it should be.
-# remedy: what to do where it is not.
+# ok: True, False, or None if the check could not be made. figure: the measurement. rule: the value that it should have.
+# remedy: what a user can do if the check fails.
 Check = collections.namedtuple("Check", "name ok figure rule remedy")
 
-LOST = 0.02  # share of images without a torque
-JITTER, OFF_BEAT = 0.2, 0.05  # an interval so far off the median is irregular; share of such intervals
-VARIATION = 0.01  # [grey]: about the noise of a camera
-EXCITATION = 0.2  # of max_torque; uniform torques over the whole range have 0.58
-# Over the first third of the steps. Set on 18 pendulum models after one to five trials (presets paper and efficient,
-# and the worse schedules v_p_only and sequential), judged by the next two bags: all rules together pass the 9 whose
-# greedy run succeeded and fail the 9 others. Of 14 models of other seeds they pass 9 of 11 and fail 1 of 3. Since predictions
-# are compared with blurred images: of 100 models of seeds 0 to 4 they pass 34 of 44 (efficient: 23 of 23) and fail 47 of 56.
-BEATS_REPEAT = 0.75  # error of predictions over that of the last frame repeated
-TORQUE_EFFECT = 1.04  # error without knowing the torque, over the error with it
+LOST = 0.02  # largest share of images without a torque
+# Relative distance to the median at which an interval is irregular, and largest share of irregular intervals.
+JITTER, OFF_BEAT = 0.2, 0.05
+VARIATION = 0.01  # smallest variation [grey], about the noise of a camera
+# Smallest standard deviation of torques, divided by max_torque. Uniform torques over the whole range have 0.58.
+EXCITATION = 0.2
+# Thresholds for the first third of the steps. They were set on 18 pendulum models after one to five trials (presets
+# paper and efficient, and the worse schedules v_p_only and sequential), judged on the next two bags: all rules together
+# pass the 9 models with a successful evaluation and fail the 9 others. Of 14 models of other seeds, the rules pass 9 of
+# 11 successful ones and fail 1 of 3. After predictions were compared with blurred images, the rules passed 34 of 44
+# successful models of the seeds 0 to 4 (preset efficient: 23 of 23) and failed 47 of 56 others.
+BEATS_REPEAT = 0.75  # error of predictions divided by the error of the last frame repeated
+TORQUE_EFFECT = 1.04  # error with the mean torque divided by the error with the true torques
 FRAMES_PER_COMPONENT = 2.0
 FEW_FRAMES = 50
 KEPT_BY_PCA = 0.9
 KEPT_BY_FEATURES = 0.7
-GOAL_DISTANCE = 0.5  # in units of the features' spread
-COLLAPSED = 0.01  # spread of features, which lie in +-pi/2
+GOAL_DISTANCE = 0.5  # largest distance of the goal to a frame, in units of the features' spread
+COLLAPSED = 0.01  # smallest spread of features, which lie in +-pi/2
 
 
 def percent(share):
@@ -31,18 +34,21 @@ def percent(share):
 
 
 def kept_share(data, column):
-    """1 - (mean square that is lost) / (mean square of the images, from the model's mean image)."""
+    """Share of the images' variation that a projection or reconstruction keeps:
+
+      1 - sum |y - y_kept|^2 / sum |y - mean|^2,   with the model's mean image
+    """
     whole = np.sum(data.frames["mean_rms"] ** 2)
     return 1.0 - np.sum(data.frames[column] ** 2) / whole if whole > 0.0 else 0.0
 
 
 def spread_of(features):
-    """Root of the mean squared distance of features to their mean."""
+    """Root mean square distance of features to their mean."""
     return float(np.sqrt(np.mean(np.sum((features - features.mean(axis=0)) ** 2, axis=1))))
 
 
 def intervals(data):
-    """Each interval between two frames of one bag, over the median of that bag."""
+    """All intervals between consecutive frames of a bag, divided by the median interval of that bag."""
     out = []
     for bag in np.unique(data.frames["bag"]):
         steps = np.diff(data.frames["time_s"][data.frames["bag"] == bag])
@@ -52,8 +58,8 @@ def intervals(data):
 
 
 def num_lost(data):
-    """How many images have no torque, between the first and the last frame of their bag. What lies before is a robot's wait
-    for its reset, what lies after is the end.
+    """Number of images without a torque between the first and last frame of their bag. Earlier images are taken while a
+    robot waits for its reset, and later ones after the end of the trial.
     """
     bag_of, time = data.unpaired["images without torque"]
     number = 0
@@ -131,7 +137,8 @@ def check_spread(data):
 
 
 def first_third(data):
-    """How many steps ahead are judged: later errors add up, and a plan is made anew before they matter."""
+    """Number of steps ahead that the checks judge. Later errors accumulate, and the controller plans again before they
+    matter."""
     return (len(data.errors["steps"]) + 2) // 3
 
 
@@ -168,8 +175,8 @@ def check_goal(data):
         "of all frames here and of those that the model keeps, the nearest to the goal is %.2f spreads of the features away" % near)
 
 
-# Name, function that returns (ok, figure), rule and remedy of each check, in the order in which to mend what is wrong: the data
-# first. Those of a model alone are OF_MODEL.
+# Name, function that returns (ok, figure), rule and remedy of each check, in the order in which a user should fix
+# problems, starting with the data. OF_MODEL has the checks that need no bags.
 CHECKS = (
     ("Images have their torques", check_pairs,
      "at most %s, from the first image that has one to the last: each one splits the trial, and nothing is predicted across it"
@@ -218,7 +225,7 @@ OF_MODEL = (check_frames, check_goal)
 
 
 def verdict(data):
-    """All checks of a ModelData."""
+    """Returns all checks of a ModelData."""
     checks = []
     for name, check, rule, remedy in CHECKS:
         if data.bags is not None or check in OF_MODEL:
@@ -228,7 +235,7 @@ def verdict(data):
 
 
 def summary(checks):
-    """The verdict in two sentences: how many checks failed, and what to do first."""
+    """Summary in two sentences: the number of failed checks, and the first remedy."""
     failed = [check for check in checks if check.ok is False]
     unknown = [check for check in checks if check.ok is None]
     if failed:

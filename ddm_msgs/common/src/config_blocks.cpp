@@ -1,4 +1,4 @@
-// Blocks of a configuration: read from a file, laid over those of another.
+// Reads the blocks of configuration files and merges them.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_common/config_blocks.h"
 
@@ -15,7 +15,7 @@
 namespace ddm {
 namespace {
 
-constexpr std::size_t kMaxBytes = 1000000;  // of a configuration file
+constexpr std::size_t kMaxBytes = 1000000;  // largest size of a configuration file
 
 [[noreturn]] void refuseAt(const std::string& path, const YAML::Mark& mark,
                            const std::string& what) {
@@ -33,7 +33,7 @@ void requireUniqueKeys(const YAML::Node& map, const std::string& path) {
 }
 
 std::string readText(const std::string& path) {
-  // A folder opens like a file and then reads as an empty one.
+  // A folder can be opened like a file and then reads as an empty file.
   std::error_code ignored;
   std::ifstream in(path);
   if (std::filesystem::is_directory(path, ignored) || !in) {
@@ -48,16 +48,17 @@ std::string readText(const std::string& path) {
                            " bytes: it is not a configuration file");
 }
 
-/// Keys whose values name files.
+/// Keys whose values are paths of files.
 constexpr std::pair<const char*, const char*> kFileKeys[] = {
     {"plant", "model"}, {"robot", "goal_file"}, {"start", "model"}, {"start", "bags"}};
 
-/// A plant is named by its file if the name ends in .yaml.
+/// Whether the name of a plant is the path of a .yaml file.
 bool isPlantFile(const YAML::Node& name) {
   return name.IsScalar() && std::filesystem::path(name.Scalar()).extension() == ".yaml";
 }
 
-/// Makes a relative path, or each one of a list, start at `folder`; package:// stays as it is.
+/// Makes a relative path, or each relative path of a list, absolute from `folder`; package:// URLs
+/// stay unchanged.
 void resolvePaths(const std::filesystem::path& folder, YAML::Node value) {
   if (value.IsSequence()) {
     for (const YAML::Node& one : value) resolvePaths(folder, one);
@@ -83,7 +84,8 @@ YAML::Node readBlocks(const std::string& path) {
 
 YAML::Node parseBlocks(const std::string& text, const std::string& source) {
   const YAML::Node document = parseYaml(text, source);
-  if (document.IsNull()) return YAML::Node(YAML::NodeType::Map);  // a preset may be all comments
+  // a preset may contain only comments
+  if (document.IsNull()) return YAML::Node(YAML::NodeType::Map);
   if (!document.IsMap()) {
     refuseAt(source, document.Mark(), "expected a map of blocks, got " + oneLine(document));
   }
@@ -103,7 +105,8 @@ void overlay(const YAML::Node& above, YAML::Node* below) {
         target[entry.first.Scalar()] = YAML::Clone(entry.second);
       }
     } else if (!target.IsDefined() || !block.second.IsNull()) {
-      (*below)[name] = YAML::Clone(block.second);  // or an alias would change with its anchor
+      // a copy, because an alias would change together with its anchor
+      (*below)[name] = YAML::Clone(block.second);
     }
   }
 }

@@ -1,4 +1,4 @@
-// A folder for one process at a time.
+// A lock that gives one process exclusive use of a folder.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_common/folder_lock.h"
 
@@ -26,7 +26,8 @@ namespace {
 
 using Owner = std::map<std::string, std::string>;
 
-constexpr std::chrono::seconds kOpeningLimit(10);  // others take milliseconds from step 1 to 2
+// Time limit for step 1. A process takes milliseconds from step 1 to step 2.
+constexpr std::chrono::seconds kOpeningLimit(10);
 
 std::string firstLine(const std::string& path) {
   std::ifstream file(path);
@@ -35,15 +36,16 @@ std::string firstLine(const std::string& path) {
   return line;
 }
 
-/// When a process was started, in ticks since the machine was. Numbers of processes come again.
-/// @return  "ended" for one that has ended and waits for its parent; empty if that is not known
+/// Start time of a process, in ticks since the start of the machine. The start time distinguishes
+/// processes with the same process id.
+/// @return "ended" for a zombie process; empty if the start time is not known
 std::string startOf(const std::string& pid) {
   std::string stat = firstLine("/proc/" + pid + "/stat");
   const std::string::size_type end_of_name = stat.rfind(')');
   if (end_of_name == std::string::npos) return "";
   std::istringstream words(stat.substr(end_of_name + 1));
   const std::istream_iterator<std::string> first(words), end;
-  const std::vector<std::string> fields(first, end);  // from field 3 of proc(5) on
+  const std::vector<std::string> fields(first, end);  // begins with field 3 of proc(5)
   if (fields.size() < 20) return "";
   return fields[0] == "Z" || fields[0] == "X" ? "ended" : fields[19];
 }
@@ -59,7 +61,7 @@ Owner thisProcess() {
   ::gethostname(host.data(), host.size() - 1);
   const std::string pid = std::to_string(::getpid());
   const std::string boot = firstLine("/proc/sys/kernel/random/boot_id");
-  const std::string machine = firstLine("/etc/machine-id");  // many containers have none
+  const std::string machine = firstLine("/etc/machine-id");  // missing in many containers
   return {{"host", host.data()},   {"pid", pid},
           {"start", startOf(pid)}, {"machine", machine.empty() ? boot : machine},
           {"boot", boot},          {"namespace", pidNamespace()}};
@@ -78,7 +80,7 @@ std::string readAll(const std::string& path) {
   return text.str();
 }
 
-/// @return  empty if the text does not name a process
+/// @return empty if the text does not name a process
 Owner parseOwner(const std::string& text) {
   Owner owner;
   std::istringstream lines(text);
@@ -98,7 +100,7 @@ bool isOnThisMachine(const Owner& owner, const Owner& self) {
   return owner.at("host") == self.at("host") && owner.at("machine") == self.at("machine");
 }
 
-/// Whether it is certain that a process has ended. That of another container cannot be seen.
+/// Whether a process has certainly ended. A process in another container is not visible.
 bool hasEnded(const Owner& owner, const Owner& self) {
   if (!isOnThisMachine(owner, self)) return false;
   if (owner.at("boot") != self.at("boot")) return true;
@@ -149,7 +151,7 @@ void createNew(const std::string& folder, const std::string& path, const std::st
   cannotLock(folder, error);
 }
 
-/// A signal between the steps would leave .lock.new behind.
+/// Blocks signals, because a signal between the steps would leave .lock.new behind.
 class BlockedSignals {
  public:
   BlockedSignals() {
@@ -165,7 +167,7 @@ class BlockedSignals {
 
 /// Files that a signal deletes before it ends the process.
 std::array<std::atomic<const char*>, 8> files_of_process{};
-std::atomic<pid_t> process{0};  // not of a child that fork() made
+std::atomic<pid_t> process{0};  // process that owns the files; a child after fork() does not
 
 void onSignal(int number) {
   for (const auto& file : files_of_process) {
@@ -224,7 +226,8 @@ FolderLock::FolderLock(const std::string& folder) {
 
 FolderLock::~FolderLock() {
   keepAtSignal(path_.c_str());
-  if (readAll(path_) == owner_) ::unlink(path_.c_str());  // unless a person has deleted it
+  // A user may have deleted or replaced the lock.
+  if (readAll(path_) == owner_) ::unlink(path_.c_str());
 }
 
 }  // namespace ddm

@@ -1,4 +1,4 @@
-// Image codec: checks first, then grey, square, resize.
+// Converts camera messages to grey values: checks, then grey, crop, square, size.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_common/image_codec.h"
 
@@ -27,15 +27,16 @@ namespace encodings = sensor_msgs::image_encodings;
 
 constexpr int kMaxSize = 16384;
 
-// YUV 4:2:2: two bytes a pixel, of which one is the luma.
+// YUV 4:2:2 has two bytes per pixel; one of them is the luma.
 constexpr char kLumaFirst[] = "yuyv";
 constexpr char kLumaSecond[] = "uyvy";
 
-/// Encodings that are accepted, in small letters -> the encoding that the pixels are taken for.
+/// Accepted encodings in lower case, each with the encoding by which its pixels are read.
 const std::map<std::string, std::string>& acceptedEncodings() {
   static const std::map<std::string, std::string> accepted = [] {
-    // OpenCV's own names say nothing about colours; cv_bridge would refuse to turn them into grey.
-    // Drivers have many names for the two orders of YUV 4:2:2: luma first, or second (ROS's yuv422).
+    // OpenCV's own names do not specify colours, and cv_bridge refuses to convert them to grey.
+    // Drivers use many names for the two byte orders of YUV 4:2:2: luma first, or luma second
+    // (yuv422 in ROS).
     std::map<std::string, std::string> out = {
         {"8uc1", "mono8"},           {"8uc3", "bgr8"},        {"8uc4", "bgra8"},
         {"16uc1", "mono16"},         {"16uc3", "bgr16"},      {"16uc4", "bgra16"},
@@ -74,7 +75,8 @@ std::size_t depthBytes(const std::string& encoding) {
   return isYuv422(encoding) ? 1 : encodings::bitDepth(encoding) / 8;
 }
 
-/// The encoding to read the pixels as. Throws unless every pixel lies within the data.
+/// Returns the encoding by which the pixels are read. Throws unless every pixel lies within the
+/// data.
 std::string checkedEncoding(const sensor_msgs::Image& image) {
   const auto found = acceptedEncodings().find(boost::algorithm::to_lower_copy(image.encoding));
   if (found == acceptedEncodings().end()) {
@@ -99,7 +101,7 @@ std::string checkedEncoding(const sensor_msgs::Image& image) {
     refuse("data must hold step * height = " + std::to_string(data_bytes) + " bytes for " +
            extent(image) + ", got " + std::to_string(image.data.size()));
   }
-  // OpenCV leaves a mosaic black that is smaller than its filter.
+  // OpenCV returns a black image for a mosaic that is smaller than its filter.
   if (encodings::isBayer(encoding) && (image.width < 3 || image.height < 3)) {
     refuse("a Bayer mosaic needs at least 3 x 3 pixels, got " + extent(image));
   }
@@ -114,7 +116,7 @@ void requireUnitRange(const cv::Mat& grey) {
   for (int row = 0; row < grey.rows; ++row) {
     for (int col = 0; col < grey.cols; ++col) {
       const Real value = grey.at<Real>(row, col);
-      if (value >= Real{0} && value <= Real{1}) continue;  // so that NaN does not pass
+      if (value >= Real{0} && value <= Real{1}) continue;  // false for NaN
       std::ostringstream out;
       out << "float grey values must lie in [0, 1], got " << value << " at row " << row
           << ", column " << col << "; scale them, for instance a depth, before they are recorded";
@@ -123,7 +125,8 @@ void requireUnitRange(const cv::Mat& grey) {
   }
 }
 
-/// Gives the pixels the byte order of this computer. cv_bridge would take their bytes for channels.
+/// Converts the pixels to the byte order of this computer. cv_bridge would treat their bytes as
+/// channels.
 void swapBytes(std::size_t depth_bytes, sensor_msgs::Image* image) {
   for (std::size_t row = 0; row < image->data.size(); row += image->step) {
     for (std::size_t at = 0; at + depth_bytes <= image->step; at += depth_bytes) {
@@ -134,10 +137,10 @@ void swapBytes(std::size_t depth_bytes, sensor_msgs::Image* image) {
   image->is_bigendian = 0;
 }
 
-/// One channel, of the depth that the image has.
+/// Converts the image to one channel with the depth of the image.
 cv::Mat greyImage(const sensor_msgs::Image& image, const std::string& encoding) {
   if (isYuv422(encoding)) {
-    // A view of the caller's bytes, which are only read; OpenCV has none of constant pixels.
+    // cv::Mat has no constructor for constant pixels. The pixels are only read.
     const cv::Mat pixels(static_cast<int>(image.height), static_cast<int>(image.width), CV_8UC2,
                          const_cast<std::uint8_t*>(image.data.data()), image.step);
     cv::Mat luma;
@@ -180,8 +183,8 @@ double greyScale(int depth) {
   return 255.0;
 }
 
-/// Whether these are the bytes of a JPEG that was cut short: OpenCV makes grey of what is missing.
-/// The mark of its end is looked for after the headers, which may hold a smaller JPEG.
+/// Whether a JPEG is truncated; OpenCV fills missing parts with grey. The search for the end marker
+/// begins after the headers, because the headers may contain a smaller JPEG.
 bool isJpegCutShort(const std::vector<std::uint8_t>& data) {
   constexpr std::uint8_t kMark = 0xff, kBegin = 0xd8, kScan = 0xda, kEnd = 0xd9;
   if (data.size() < 2 || data[0] != kMark || data[1] != kBegin) return false;
@@ -210,7 +213,7 @@ std::vector<std::uint8_t> decodeImage(const sensor_msgs::Image& image, int size,
   try {
     grey = centralSquare(cropped(greyImage(image, encoding), crop));
     if (grey.rows != size) cv::resize(grey, grey, cv::Size(size, size), 0, 0, cv::INTER_AREA);
-  } catch (const std::invalid_argument&) {  // with our own words
+  } catch (const std::invalid_argument&) {  // from refuse()
     throw;
   } catch (const std::exception& e) {
     refuse("cannot convert " + extent(image) + " to grey: " + e.what());
@@ -235,7 +238,7 @@ sensor_msgs::Image unpacked(const sensor_msgs::CompressedImage& image) {
     if (!image.data.empty() && !cut_short) {
       pixels = cv::imdecode(image.data, cv::IMREAD_COLOR | cv::IMREAD_ANYDEPTH);
     }
-  } catch (const cv::Exception&) {  // what is said below says more than its text
+  } catch (const cv::Exception&) {  // the message below is more helpful than OpenCV's
   }
   if (pixels.empty() || (pixels.depth() != CV_8U && pixels.depth() != CV_16U)) {
     refuse(std::to_string(image.data.size()) + " bytes of format '" + image.format +
@@ -276,7 +279,8 @@ sensor_msgs::Image readPicture(const std::string& path) {
 }
 
 void writePicture(const std::string& path, const sensor_msgs::Image& image) {
-  const char* encoding = image.encoding == "mono8" ? "mono8" : "bgr8";  // as OpenCV writes colours
+  // OpenCV writes colours in the order blue, green, red.
+  const char* encoding = image.encoding == "mono8" ? "mono8" : "bgr8";
   std::vector<std::uint8_t> bytes;
   try {
     cv::imencode(std::filesystem::path(path).extension().string(),

@@ -1,4 +1,4 @@
-// Log lines of callbacks that must not wait for a terminal.
+// Logs from callbacks that a stopped terminal must not block.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_common/log_thread.h"
 
@@ -21,7 +21,7 @@ struct LogThread::Lines {
   std::mutex mutex;
   std::condition_variable changed;
   std::deque<std::pair<ros::console::levels::Level, std::string>>
-      waiting;  // the first is being written
+      waiting;  // the first line is being written
   bool ended = false;
 
   void write() {

@@ -1,4 +1,4 @@
-// Parameters of a ROS node as a YAML tree.
+// Converts the parameters of a ROS node to a YAML tree.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_common/node_params.h"
 
@@ -43,7 +43,8 @@ YAML::Node toYaml(XmlRpc::XmlRpcValue value, const std::string& name) {
 }
 
 YAML::Node nodeParams(const ros::NodeHandle& pnh) {
-  const std::string name = "configuration";  // as a char* it would pass for a bool
+  // a std::string, because a char pointer would be converted to bool
+  const std::string name = "configuration";
   const std::string shared =
       ros::names::resolve(ros::names::parentNamespace(pnh.getNamespace()), name);
   YAML::Node params(YAML::NodeType::Map);

@@ -1,4 +1,4 @@
-// Notices that another node has died.
+// Detects that the process of another node has ended.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_common/node_watch.h"
 
@@ -23,7 +23,7 @@ constexpr std::chrono::milliseconds kLook(5);
 constexpr std::chrono::milliseconds kRetry(500);
 constexpr int kConnectLimit_ms = 1000;
 
-/// A connection to a process, closed with this.
+/// A connection to a process; the destructor closes it.
 class Connection {
  public:
   Connection(const std::string& host, std::uint32_t port) {
@@ -40,10 +40,11 @@ class Connection {
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
 
-  /// Whether no process listened at the address, as after the end of the process that did.
+  /// Whether the connection was refused because no process listens at the address, for example
+  /// because the process has ended.
   bool wasRefused() const { return refused_; }
 
-  /// The other side has not ended it. Nobody sends anything here.
+  /// Whether the other process has not closed the connection. No data is sent on this connection.
   bool isOpen() const {
     char byte = 0;
     return socket_ >= 0 && ::recv(socket_, &byte, 1, MSG_PEEK | MSG_DONTWAIT) != 0 &&
@@ -77,8 +78,8 @@ class Connection {
 
 struct NodeWatch::State {
   std::mutex mutex;
-  std::string node;     // that was heard last; empty: none yet
-  bool is_new = false;  // to the thread: another node, or one that was dead
+  std::string node;     // node in the last call of hear(); empty before
+  bool is_new = false;  // true if the thread has to connect: another node, or a node that had ended
   bool died = false;
   bool ended = false;
 };
@@ -105,7 +106,8 @@ bool NodeWatch::died() const {
 
 void NodeWatch::watch(const std::shared_ptr<State>& state) {
   std::string watched;
-  std::unique_ptr<Connection> connection;  // null: none, or the process of `watched` has ended
+  // Null if there is no connection, or if the process of `watched` has ended.
+  std::unique_ptr<Connection> connection;
   std::chrono::steady_clock::time_point next_try;
   for (;;) {
     std::this_thread::sleep_for(kLook);
@@ -126,12 +128,12 @@ void NodeWatch::watch(const std::shared_ptr<State>& state) {
     connection.reset();
     if (const auto address = addressOf(node)) {
       connection = std::make_unique<Connection>(address->host, address->port);
-      is_gone =
-          is_gone || connection->wasRefused();  // the message came from a process at this address
+      // If the connection is refused, the process that sent the last message has ended.
+      is_gone = is_gone || connection->wasRefused();
       if (!connection->isOpen()) connection.reset();
     }
     const std::lock_guard<std::mutex> lock(state->mutex);
-    // A node that has never been in reach, as behind a firewall, is not called dead.
+    // A node that could never be reached, for example behind a firewall, is not reported as ended.
     if (is_gone && connection == nullptr && state->node == node) state->died = true;
   }
 }

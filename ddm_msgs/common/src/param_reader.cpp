@@ -1,4 +1,4 @@
-// Strict configuration reader: the collection of problems.
+// Strict configuration reader: collects and formats the problems.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_common/param_reader.h"
 
@@ -13,14 +13,15 @@
 namespace ddm {
 namespace {
 
-/// All blocks of the parameter references in config/ of each package. A program leaves those alone
-/// that it does not read, so that all programs can be given the same files.
+/// All blocks of the parameter references in config/ of all packages. A program ignores the blocks
+/// that it does not read, so that all programs can use the same files.
 const std::set<std::string> kBlocks = {
     "plant",     "camera",   "sim",        "show",          "robot",      "image", "model",
     "training",  "data_set", "recorder",   "mpc",           "controller", "pilco", "gp",
     "sparse_gp", "trial",    "experiment", "policy_search", "evaluation", "start"};
 
-/// What a saved configuration also says: what made it, and what counts as success.
+/// Further keys of a saved configuration: the version and renderer that produced it, and the
+/// success criterion.
 const std::set<std::string> kOrigin = {"version", "renderer", "goal"};
 
 /// " (did you mean horizon? known keys: horizon, epsilon)"
@@ -85,7 +86,7 @@ void ParamReader::reportWrongType(const std::string& path, const YAML::Node& val
 }
 
 void ParamReader::report(const std::string& problem) {
-  // A block may be read by two parts of one program.
+  // Two parts of one program may read the same block.
   if (std::find(problems_.begin(), problems_.end(), problem) == problems_.end()) {
     problems_.push_back(problem);
   }

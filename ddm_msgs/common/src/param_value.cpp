@@ -1,4 +1,4 @@
-// Single values of a configuration: strict parsing, exact printing.
+// Conversion of single configuration values: strict parsing and exact printing.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_common/param_value.h"
 
@@ -19,7 +19,7 @@ constexpr int kExactDigits = std::numeric_limits<double>::max_digits10;
 bool parseText(std::string text, int* value) {
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.erase(0, 1);
   const std::size_t first_digit = !text.empty() && text[0] == '-' ? 1 : 0;
-  // A leading zero is an octal number to some readers of YAML and a decimal one to others.
+  // YAML readers disagree on a leading zero: some read an octal number and some a decimal number.
   if (text.size() > first_digit + 1 && text[first_digit] == '0') return false;
   int parsed = 0;
   const auto result = std::from_chars(text.data(), text.data() + text.size(), parsed);
@@ -44,7 +44,7 @@ bool parseText(const std::string& text, double* value) {
     }
   }
   std::istringstream in(text);
-  in.imbue(std::locale::classic());  // a program's locale must not change the decimal point
+  in.imbue(std::locale::classic());  // the locale of the program must not change the decimal point
   double parsed = 0.0;
   if (!(in >> std::noskipws >> parsed) || in.peek() != std::istringstream::traits_type::eof()) {
     return false;

@@ -1,4 +1,4 @@
-// Files that are read and written as a whole.
+// Reads and writes whole files, and expands paths in a home folder.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_common/plain_file.h"
 
@@ -23,7 +23,7 @@ namespace {
 
 std::string reason() { return errno == 0 ? "unknown reason" : std::strerror(errno); }
 
-/// @return the kind of what is at the path, links followed; 0 if there is nothing
+/// @return file type at the path after following links; 0 if the path does not exist
 mode_t kindOf(const std::string& path) {
   struct stat status {};
   return ::stat(path.c_str(), &status) == 0 ? status.st_mode & S_IFMT : 0;
@@ -33,9 +33,9 @@ mode_t kindOf(const std::string& path) {
   throw std::runtime_error("cannot " + what + " " + path + ": " + reason());
 }
 
-/// Opens a new file next to `path`, under a name that no other process or thread has. Unlike
-/// mkstemp() it leaves the permissions to the umask.
-/// @return  its descriptor, or a negative number with errno set
+/// Opens a new file next to `path`, under a name that no other process or thread uses. Unlike
+/// mkstemp(), the umask determines the permissions.
+/// @return the file descriptor, or a negative number with errno set
 int openUnfinished(const std::string& path, std::string* unfinished) {
   std::random_device random;
   int file = -1;
@@ -48,7 +48,7 @@ int openUnfinished(const std::string& path, std::string* unfinished) {
   return file;
 }
 
-/// @return  false, with errno set, if not all bytes were written
+/// @return false, with errno set, if not all bytes were written
 bool writeAll(int file, const std::string& bytes) {
   size_t written = 0;
   while (written < bytes.size()) {
@@ -59,9 +59,9 @@ bool writeAll(int file, const std::string& bytes) {
   return true;
 }
 
-/// Waits until the bytes of a file, or the names in a folder, are on the disk.
-/// @param flags  of open()
-/// @return  false, with errno set, if they are not
+/// Waits until the content of a file, or the names in a folder, are on the disk.
+/// @param flags  flags for open()
+/// @return false, with errno set, on failure
 bool store(const std::string& path, int flags) {
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | flags);
   if (file < 0) return false;
@@ -72,13 +72,13 @@ bool store(const std::string& path, int flags) {
 }
 
 /// Renames a file and waits until its new name is on the disk.
-/// @return  false, with errno set, if that failed
+/// @return false, with errno set, on failure
 bool renameAndStore(const std::string& from, const std::string& to) {
   if (::rename(from.c_str(), to.c_str()) != 0) return false;
   const size_t slash = to.find_last_of('/');
   const std::string folder = slash == std::string::npos ? "." : to.substr(0, slash + 1);
-  // The file is there: it does not matter that a folder may not be read, or that its file system
-  // does not know how to store one.
+  // Some folders cannot be opened for reading, and some file systems cannot synchronise a folder.
+  // The file has been renamed in both cases, so these errors are ignored.
   return store(folder, O_DIRECTORY) || errno == EACCES || errno == EINVAL;
 }
 
@@ -126,7 +126,7 @@ void writeFileAtomically(const std::string& path, const std::string& bytes) {
 void removeUnfinished(const std::string& folder) {
   namespace fs = std::filesystem;
   static const std::regex kUnfinished(".*\\.unfinished\\.[0-9a-f]+");
-  std::error_code ignored;  // what cannot be removed does no harm
+  std::error_code ignored;  // remaining files do no harm
   const auto options = fs::directory_options::skip_permission_denied;
   for (fs::recursive_directory_iterator entry(folder, options, ignored), end; entry != end;
        entry.increment(ignored)) {

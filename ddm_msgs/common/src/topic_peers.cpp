@@ -1,4 +1,4 @@
-// Who is at the other end of a topic, and whether they have found each other.
+// Queries which nodes publish a topic and whether publishers and subscribers are connected.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_common/topic_peers.h"
 
@@ -26,10 +26,11 @@ namespace {
 using NodesByTopic = std::map<std::string, std::set<std::string>>;
 using Connections = std::set<std::pair<std::string, std::string>>;  // topic, subscriber
 
-constexpr std::chrono::seconds kLimit(5);   // a node that was stopped never answers
-constexpr std::chrono::seconds kEnding(3);  // a node that is ending may answer for a while
+constexpr std::chrono::seconds kLimit(5);   // because a stopped node never answers
+constexpr std::chrono::seconds kEnding(3);  // because a node may still answer while it ends
 
-/// Who publishes and who subscribes, as the master knows it; empty if it does not answer.
+/// Publishers and subscribers of all topics, according to the master; empty if the master does not
+/// answer.
 std::optional<std::pair<NodesByTopic, NodesByTopic>> publishersAndSubscribers() {
   std::optional<XmlRpc::XmlRpcValue> state = askMaster("getSystemState", ros::this_node::getName());
   if (!state) return std::nullopt;
@@ -46,12 +47,13 @@ std::optional<std::pair<NodesByTopic, NodesByTopic>> publishersAndSubscribers() 
   return std::make_pair(nodesByTopic((*state)[0]), nodesByTopic((*state)[1]));
 }
 
-/// Calls a method of a node's interface; empty if it does not answer, or not in time.
+/// Calls a method of a node's XML-RPC interface; empty if the node does not answer in time.
 std::optional<XmlRpc::XmlRpcValue> askNode(const NodeAddress& node, const std::string& method) {
   const auto ask = [node, method]() -> std::optional<XmlRpc::XmlRpcValue> {
     XmlRpc::XmlRpcValue caller, response;
     caller[0] = ros::this_node::getName();
-    // The path alone: a node in Python does not know the page "http://...".
+    // Only the path is given, because the server of rospy does not accept the full URL
+    // "http://...".
     XmlRpc::XmlRpcClient* const client = ros::XMLRPCManager::instance()->getXMLRPCClient(
         node.host, static_cast<int>(node.port), "/");
     if (client == nullptr) return std::nullopt;
@@ -62,7 +64,7 @@ std::optional<XmlRpc::XmlRpcValue> askNode(const NodeAddress& node, const std::s
   return callWithin(kLimit, ask).value_or(std::nullopt);
 }
 
-/// Outgoing connections of a node; empty if it does not answer.
+/// Outgoing connections of a node; empty if the node does not answer.
 Connections outgoingConnections(const std::string& node) {
   const std::optional<NodeAddress> address = addressOf(node);
   std::optional<XmlRpc::XmlRpcValue> response;
@@ -76,13 +78,13 @@ Connections outgoingConnections(const std::string& node) {
       if (static_cast<std::string>(connection[2]) != "o") continue;
       out.emplace(static_cast<std::string>(connection[4]), static_cast<std::string>(connection[1]));
     }
-  } catch (const XmlRpc::XmlRpcException&) {  // an answer of other types counts as none
+  } catch (const XmlRpc::XmlRpcException&) {  // an answer of unexpected types counts as no answer
     out.clear();
   }
   return out;
 }
 
-/// The nodes that publish a topic, this one not counted.
+/// The nodes that publish a topic, without this node.
 std::set<std::string> othersThatPublish(const NodesByTopic& publishers, const std::string& topic) {
   const auto found = publishers.find(topic);
   if (found == publishers.end()) return {};
@@ -129,7 +131,7 @@ std::string describeImagePublishers(const std::string& topic, const std::string&
   constexpr char kCompressed[] = "sensor_msgs/CompressedImage";
   const std::string publishers = describePublishers(topic);
   const auto list_types = [] {
-    ros::master::V_TopicInfo topics;  // that have a publisher
+    ros::master::V_TopicInfo topics;  // topics with a publisher
     ros::master::getTopics(topics);
     std::map<std::string, std::string> types;
     for (const ros::master::TopicInfo& each : topics) types[each.name] = each.datatype;

@@ -1,4 +1,4 @@
-// Limits for what ROS would wait for without end: services and simulated time.
+// Time limits for ROS calls that could block without end: services and simulated time.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_common/waiting.h"
 

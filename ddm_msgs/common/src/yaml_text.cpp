@@ -1,4 +1,4 @@
-// YAML from a file of unknown origin, and its values in messages.
+// Parses YAML from untrusted files, and prints YAML values in messages.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_common/yaml_text.h"
 
@@ -23,8 +23,8 @@ constexpr std::size_t kMaxLevels = 20;
   throw std::invalid_argument(source + ":" + std::to_string(mark.line + 1) + ": " + what);
 }
 
-/// Whether yaml-cpp writes a text as it has read it: it replaces what is not UTF-8, and codes that
-/// stand for no character.
+/// Whether yaml-cpp prints a text as it was read. yaml-cpp replaces bytes that are not UTF-8, and
+/// code points that are no characters.
 bool isText(const std::string& text) {
   for (auto at = text.begin(); at != text.end();) {
     const std::uint32_t code = utf::utf_traits<char>::decode(at, text.end());
@@ -34,7 +34,7 @@ bool isText(const std::string& text) {
   return true;
 }
 
-/// Listens to the parser, which calls itself at each level, and stops it in time.
+/// Event handler that stops the recursive parser before the document becomes too deep.
 class Inspection : public YAML::EventHandler {
  public:
   explicit Inspection(const std::string& source) : source_(source) {}
@@ -75,7 +75,7 @@ class Inspection : public YAML::EventHandler {
 
   const std::string& source_;
   int num_documents_ = 0;
-  std::vector<YAML::anchor_t> open_;  // of the lists and maps that have begun
+  std::vector<YAML::anchor_t> open_;  // anchors of the lists and maps that are not closed yet
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Tests of calls with a limit.
+// Tests of function calls with a time limit.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 

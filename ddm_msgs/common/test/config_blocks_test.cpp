@@ -1,4 +1,4 @@
-// Tests of single values from the command line, and of paths in a home folder.
+// Tests of values from the command line and of paths in a home folder.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_common/config_blocks.h"
 

@@ -1,4 +1,4 @@
-// Tests of folders for one process at a time: who has one, who gets one after a kill, and who is refused.
+// Tests of folder locks: ownership, locks of killed processes, and refusals.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_common/folder_lock.h"
 
@@ -26,7 +26,7 @@ namespace {
 
 using testing::throwsNaming;
 
-/// Runs a function in a process of its own.
+/// Runs a function in a child process.
 pid_t start(const std::function<void()>& function) {
   const pid_t child = ::fork();
   if (child != 0) return child;
@@ -50,13 +50,13 @@ class FolderLockTest : public ::testing::Test {
     return text.str();
   }
 
-  /// Leaves this process's lock with another value of `key`.
+  /// Writes a lock of this process with another value of `key`.
   void leaveLockWith(const std::string& key, const std::string& value) {
     const std::string text = std::regex_replace(own_, std::regex(key + ": .*"), key + ": " + value);
     std::ofstream(lock_file_) << text;
   }
 
-  /// A process that holds the folder until a signal ends it.
+  /// Starts a process that holds the folder until a signal ends it.
   pid_t startOwner() {
     int ready[2];
     if (::pipe(ready) != 0) throw std::runtime_error("no pipe");
@@ -73,7 +73,7 @@ class FolderLockTest : public ::testing::Test {
 
   const testing::TempFolder scratch_;
   const std::string lock_file_;
-  const std::string own_;  // the lock of this process
+  const std::string own_;  // content of the lock of this process
 };
 
 TEST_F(FolderLockTest, AHeldFolderIsRefusedAndAFreeOneHasNoFiles) {
@@ -92,7 +92,7 @@ TEST_F(FolderLockTest, TheLockOfAKilledProcessIsReplaced) {
   ::kill(owner, SIGKILL);
   siginfo_t info;
   ASSERT_EQ(::waitid(P_PID, static_cast<id_t>(owner), &info, WEXITED | WNOWAIT), 0);
-  EXPECT_NO_THROW(FolderLock lock(scratch_.file("")));  // while the process is a zombie
+  EXPECT_NO_THROW(FolderLock lock(scratch_.file("")));  // although the process is a zombie
   ::waitpid(owner, nullptr, 0);
 }
 
@@ -108,7 +108,7 @@ TEST_F(FolderLockTest, ASignalDeletesTheLockAndEndsTheProcess) {
 }
 
 TEST_F(FolderLockTest, OnlyTheLockOfAProcessThatHasCertainlyEndedIsReplaced) {
-  leaveLockWith("start", "1");  // its number has come again
+  leaveLockWith("start", "1");  // a later process has the same process id
   EXPECT_NO_THROW(FolderLock lock(scratch_.file("")));
   leaveLockWith("boot", "another");
   EXPECT_NO_THROW(FolderLock lock(scratch_.file("")));
@@ -150,7 +150,7 @@ TEST_F(FolderLockTest, OfManyProcessesOneAtATimeHasTheFolder) {
         if (::open(alone.c_str(), O_WRONLY | O_CREAT | O_EXCL, 0666) < 0) ::_exit(1);
         ::usleep(200);
         ::unlink(alone.c_str());
-        if (k % 10 == 9) ::raise(SIGKILL);  // leaves its lock to the others
+        if (k % 10 == 9) ::raise(SIGKILL);  // leaves a lock behind
       }
     }));
   }

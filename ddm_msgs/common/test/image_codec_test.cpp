@@ -1,4 +1,4 @@
-// Tests of the image codec: every encoding, every refusal.
+// Tests of the image codec: all encodings and all refusals.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_common/image_codec.h"
 
@@ -19,7 +19,7 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// Pixels of any type as a message without padding.
+/// Makes a message without padding from pixels of any type.
 template <class Value>
 sensor_msgs::Image makeImage(const std::string& encoding, int width, int height,
                              const std::vector<Value>& values) {
@@ -33,7 +33,7 @@ sensor_msgs::Image makeImage(const std::string& encoding, int width, int height,
   return image;
 }
 
-/// `width` x `height` pixels that all have the given channels.
+/// Makes a message of `width` x `height` pixels that all have the given channels.
 template <class Value>
 sensor_msgs::Image makeUniform(const std::string& encoding, int width, int height,
                                const std::vector<Value>& pixel) {
@@ -48,7 +48,7 @@ sensor_msgs::Image makeRamp(int width, int height) {
   return makeImage("mono8", width, height, values);
 }
 
-/// The message of the exception, or what happened instead.
+/// The message of the exception, or a description of what happened instead.
 std::string refusal(const sensor_msgs::Image& image, int size = 2) {
   try {
     decodeImage(image, size);
@@ -186,7 +186,8 @@ TEST(ImageCodec, DemosaicsEveryBayerPattern) {
 }
 
 TEST(ImageCodec, KnowsWhichBayerPixelsAreRed) {
-  // Only the top left pixel of each block of 2 x 2 is lit: a red scene, then a blue one.
+  // Only the top left pixel of each block of 2 x 2 is bright: a red scene for bayer_rggb8, a blue
+  // scene for bayer_bggr8.
   Bytes mosaic;
   for (int i = 0; i < 64; ++i) mosaic.push_back((i % 8) % 2 == 0 && (i / 8) % 2 == 0 ? 200 : 0);
   const int red = decodeImage(makeImage("bayer_rggb8", 8, 8, mosaic), 1)[0];

@@ -1,4 +1,4 @@
-// Tests of log lines that are written in a thread of their own.
+// Tests of logging in a separate thread.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_common/log_thread.h"
 
@@ -15,7 +15,7 @@
 namespace ddm {
 namespace {
 
-/// Until its end, standard output is a pipe that nobody reads.
+/// While this object exists, standard output is a pipe without a reader.
 class StoppedTerminal {
  public:
   StoppedTerminal() {
@@ -30,7 +30,7 @@ class StoppedTerminal {
     dup2(ends_[1], STDOUT_FILENO);
   }
 
-  /// What was written is read, so that who waits can go on.
+  /// Reads the pipe, so that blocked writers can continue.
   ~StoppedTerminal() {
     dup2(stdout_, STDOUT_FILENO);
     close(stdout_);
@@ -61,7 +61,8 @@ TEST(LogThread, WritesAllLinesInTheirOrderBeforeItEnds) {
 }
 
 TEST(LogThread, KeepsNobodyWaitingWhereTheTerminalIsStopped) {
-  LogThread log;  // ends after the terminal goes on: no thread logs when the process ends
+  // Destroyed after the terminal continues, so that no thread logs when the process ends.
+  LogThread log;
   const StoppedTerminal terminal;
   const auto logged = callWithin(std::chrono::seconds(10), [&log] {
     for (int i = 0; i < 10; ++i) log.info("a line");

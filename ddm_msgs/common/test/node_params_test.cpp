@@ -1,4 +1,4 @@
-// Tests of a node's parameters as YAML: the conversion by hand, the parameter server by rostest.
+// Tests of node parameters as YAML: the conversion, and reading from the parameter server.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_common/node_params.h"
 
@@ -83,7 +83,7 @@ TEST(NodeParams, ReadsTheParametersOfANodeFromTheServer) {
   EXPECT_EQ(options.goal_image, "007");
   EXPECT_EQ(options.starts, std::vector<int>({3, 4}));
   EXPECT_EQ(options.start_scale, std::vector<double>({1.0, 0.5}));
-  ASSERT_EQ(reader.problems().size(), 1u);  // nobody has vouched for it yet
+  ASSERT_EQ(reader.problems().size(), 1u);  // image_transport is unknown until ignore()
   reader.ignore("image_transport");
   EXPECT_NO_THROW(reader.requireValid());
 }
@@ -93,7 +93,7 @@ TEST(NodeParams, LaysPrivateParametersOverTheConfigurationOfTheNamespace) {
   const auto options = reader.read<MpcOptions>("mpc");
   EXPECT_EQ(options.horizon, 6);
   EXPECT_EQ(options.epsilon, 1e-3);
-  reader.ignore("trial");  // of a package that this one does not need
+  reader.ignore("trial");  // a block of another package
   EXPECT_NO_THROW(reader.requireValid());
   EXPECT_EQ(nodeParams(ros::NodeHandle("/shared/other"))["mpc"]["horizon"].Scalar(), "5");
 }

@@ -60,14 +60,14 @@ struct TrialOptions {
 
 ParamReader readerOf(const std::string& yaml) { return ParamReader(YAML::Load(yaml)); }
 
-/// All problems of the block `mpc` in a text.
+/// All problems of the block `mpc` in a YAML text.
 std::vector<std::string> mpcProblems(const std::string& yaml) {
   ParamReader reader = readerOf(yaml);
   reader.read<MpcOptions>("mpc");
   return reader.problems();
 }
 
-/// The message with which a call throws `Error`; any other exception fails the test.
+/// The message of the `Error` that a call throws; any other exception fails the test.
 template <class Error, class Call>
 std::string messageOf(Call call) {
   try {
@@ -78,7 +78,7 @@ std::string messageOf(Call call) {
   return "nothing thrown";
 }
 
-/// A file that is gone when the test ends.
+/// A file that exists until the end of the test.
 class ScratchFile {
  public:
   ScratchFile(const std::string& name, const std::string& text) : path_(folder_.file(name)) {

@@ -1,4 +1,4 @@
-// Tests of single configuration values: what is accepted, what is refused, exact printing.
+// Tests of single configuration values: accepted texts, refused texts, exact printing.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_common/param_value.h"
 
@@ -19,13 +19,14 @@ namespace {
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
-/// True if the YAML text has the type; `value` then holds it.
+/// Whether the YAML text has the type of `value`, which then receives the value.
 template <class Value>
 bool parses(const std::string& text, Value* value) {
   return parseValue(YAML::Load(text), value);
 }
 
-/// Each text is this value, prints again as the same value, and the wrong texts change nothing.
+/// Expects that each text of `right` gives its value and is printed as the same value, and that the
+/// texts of `wrong` change nothing.
 template <class Value>
 void expectType(const std::vector<std::pair<std::string, Value>>& right,
                 const std::vector<std::string>& wrong, const Value& before) {

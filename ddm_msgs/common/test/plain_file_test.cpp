@@ -1,4 +1,4 @@
-// Tests of whole files: what is written is read, faults are named, and what was there stays.
+// Tests of reading and writing whole files: content, error messages, no change after errors.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_common/plain_file.h"
 
@@ -31,7 +31,7 @@ class PlainFile : public ::testing::Test {
                                                      {path, why});
   }
 
-  /// Names of all that is in the folder.
+  /// Names of all entries of the folder.
   std::vector<std::string> files() const {
     std::vector<std::string> names;
     for (const auto& entry : fs::directory_iterator(folder_.file(""))) {
@@ -57,7 +57,7 @@ TEST_F(PlainFile, IsWrittenAndReadAgain) {
 TEST_F(PlainFile, AWriteThatFailsLeavesTheOldFileAndNothingElse) {
   writeFileAtomically(path_, "old");
   {
-    const testing::FileSizeLimit limit(1);  // of three bytes
+    const testing::FileSizeLimit limit(1);  // less than the three bytes to write
     EXPECT_TRUE(isNotWritten(path_, "File too large"));
   }
   EXPECT_EQ(readFile(path_), "old");

@@ -1,4 +1,4 @@
-// Tests of the random streams: a stream for each role of each run, the same in every version.
+// Tests of the random streams: one for each purpose and episode, the same in every version.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_common/random_stream.h"
 
@@ -12,7 +12,7 @@ namespace {
 constexpr StreamRole kRole = StreamRole::kInitialisation;
 
 TEST(RandomStream, DoesNotChangeFromOneVersionToTheNext) {
-  const std::uint64_t draws[] = {// published seeds stand for these
+  const std::uint64_t draws[] = {// published results depend on these draws
                                  2172617572647196348U,  9735909815621124326U, 880987923637700293U,
                                  8837459983291567139U,  4097341192330693964U, 7253929432131995732U,
                                  312604272161489043U,   6020029715130901224U, 9449926314368251004U,

@@ -1,4 +1,4 @@
-// Which nodes have found each other, which share a topic, and what if the master stands still.
+// Tests of connections between nodes, of shared topics, and of a stopped master.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_common/topic_peers.h"
 
@@ -22,13 +22,14 @@ using Lines = std::vector<std::string>;
 
 class TopicPeersTest : public ::testing::Test {
  protected:
-  /// The one in Python is there.
+  /// Waits until the Python publisher is registered.
   void SetUp() override {
     const Lines expected = {"publisher(s) of /spoken: /alone"};
     ASSERT_EQ(eventually(expected, [] { return Lines{describePublishers("/spoken")}; }), expected);
   }
 
-  /// @return the lines of a function as soon as they are these, or the last ones of ten seconds
+  /// @return the lines of a function as soon as they equal `expected`, or its last lines after ten
+  ///         seconds
   static Lines eventually(const Lines& expected, const std::function<Lines()>& lines) {
     const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(10.0);
     Lines last = lines();
@@ -74,7 +75,7 @@ TEST_F(TopicPeersTest, ASubscriberWithoutAConnectionIsNamed) {
   ghost[0] = "/ghost";
   ghost[1] = "/spoken";
   ghost[2] = "std_msgs/Float64";
-  ghost[3] = "http://localhost:1/";  // where nobody is
+  ghost[3] = "http://localhost:1/";  // no process listens at port 1
   ASSERT_TRUE(askMaster("registerSubscriber", ghost).has_value());
   const Lines expected = {"/alone -> /ghost on /spoken"};
   EXPECT_EQ(eventually(expected, [] { return missingConnections({"/spoken"}); }), expected);
@@ -90,7 +91,7 @@ TEST_F(TopicPeersTest, ATopicWithTwoPublishersIsNamedUnlessOneOfThemIsThisNode) 
   EXPECT_EQ(eventually(expected, [] { return sharedTopics({"/disputed", "/spoken"}); }), expected);
 }
 
-/// Answers every question for connections with numbers.
+/// XML-RPC method that answers every request for connections with numbers.
 class Babbler : public XmlRpc::XmlRpcServerMethod {
  public:
   explicit Babbler(XmlRpc::XmlRpcServer* server) : XmlRpcServerMethod("getBusInfo", server) {}
@@ -131,7 +132,7 @@ TEST_F(TopicPeersTest, AMasterThatWasStoppedIsNotWaitedForWithoutEnd) {
   ASSERT_TRUE(pid.has_value());
   XmlRpc::XmlRpcValue number = *pid;
   ASSERT_EQ(::kill(static_cast<int>(number), SIGSTOP), 0);
-  // the signal takes a moment to stop all its threads
+  // The signal takes a moment to stop all threads of the master.
   const Lines expected = {"master"};
   const Lines missing = eventually(expected, [&expected] {
     const Lines lines = missingConnections({"/spoken"});

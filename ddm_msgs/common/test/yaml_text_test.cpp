@@ -1,4 +1,4 @@
-// Tests of YAML from outside: what would overflow the stack of yaml-cpp is refused.
+// Tests of untrusted YAML: documents that would overflow the stack of yaml-cpp are refused.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_common/yaml_text.h"
 
@@ -32,7 +32,7 @@ TEST(YamlText, ADocumentIsRead) {
 }
 
 TEST(YamlText, MoreThanTwentyLevelsAreRefused) {
-  EXPECT_EQ(refusalOf(lists(19)), "accepted");  // the map is the twentieth
+  EXPECT_EQ(refusalOf(lists(19)), "accepted");  // the map is the twentieth level
   EXPECT_TRUE(testing::names(refusalOf(lists(20)), {"FILE:1: ", " 20 "}));
   for (const std::string level : {"[", "{a: ", "- ", "? "}) {
     std::string text;
@@ -51,7 +51,7 @@ TEST(YamlText, TextThatWouldNotBeWrittenAsItWasReadIsRefused) {
     const YAML::Node node = parseYaml("a: \"" + text + "\"", "FILE");
     EXPECT_EQ(parseYaml(YAML::Dump(node), "FILE")["a"].Scalar(), node["a"].Scalar()) << text;
   }
-  EXPECT_EQ(refusalOf("# caf\xe9\na: 1\n"), "accepted");  // nobody reads a comment
+  EXPECT_EQ(refusalOf("# caf\xe9\na: 1\n"), "accepted");  // comments are not checked
   for (const std::string text :
        {"caf\xe9", "\xbf\xbf", "\xc3", "\xc0\x80", "\xe0\x80\x80", "\xed\xa0\x80", "\xef\xbf\xbe",
         "\xf4\x90\x80\x80", "\xf8\x88\x80\x80\x80", "\\uFDD0"}) {

@@ -1,4 +1,4 @@
-// A message from bytes that nobody vouches for.
+// Reads a ROS message from untrusted bytes.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -13,8 +13,8 @@
 
 namespace ddm {
 
-/// What ros::serialization reads a message from. Its own stream takes memory for an array before it
-/// looks whether the array is there: four bytes would be worth 32 GB. This one looks first.
+/// Stream for ros::serialization that checks the length of each array before it allocates memory.
+/// ros::serialization's own stream allocates first, so four corrupt bytes can request 32 GB.
 class MessageBytes {
  public:
   MessageBytes(const char* bytes, std::size_t size) : at_(bytes), left_(size) {}
@@ -39,14 +39,15 @@ class MessageBytes {
       values.resize(count(sizeof(Value)));
       const char* const bytes = take(values.size() * sizeof(Value));
       if (!values.empty()) std::memcpy(values.data(), bytes, values.size() * sizeof(Value));
-    } else {  // memory is taken as they come
+    } else {  // one element at a time, so that memory grows only with the bytes that exist
       values.clear();
       for (std::size_t left = count(1); left > 0; --left) next(values.emplace_back());
     }
   }
 
  private:
-  /// The number of elements that comes next.
+  /// Reads the number of elements of the array that follows.
+  /// @throws std::runtime_error if fewer bytes are left
   std::size_t count(std::size_t bytes_each) {
     std::uint32_t number = 0;
     next(number);
@@ -69,6 +70,7 @@ class MessageBytes {
   std::size_t left_;
 };
 
+/// Reads one message that fills all bytes.
 /// @throws std::runtime_error if the bytes are not exactly one message of this type
 template <class Message>
 Message messageFromBytes(const char* bytes, std::size_t size) {

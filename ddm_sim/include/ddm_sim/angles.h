@@ -1,4 +1,4 @@
-// Angles of joints.
+// Functions for angles of joints.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -8,7 +8,7 @@ namespace ddm {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// Distance of two angles [rad] the short way round, in [0, 180] deg.
+/// Absolute difference of two angles [rad], measured along the shorter arc, in [0, 180] deg.
 inline double degreesBetween(double a, double b) {
   return std::abs(std::remainder(a - b, 2.0 * kPi)) * 180.0 / kPi;
 }

@@ -1,4 +1,4 @@
-// The camera: pictures of a plant as a learner gets them, with what may go wrong with them.
+// The camera model: turns the rendered image of a plant into the image that a learner receives.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -13,13 +13,14 @@
 
 namespace ddm {
 
-/// Faults of the camera, see Camera; if all are 0, the camera is perfect. YAML block `camera:`.
+/// Disturbances of the camera, see Camera. With all values at 0 the camera is perfect. YAML block
+/// `camera:`.
 struct CameraOptions {
-  double noise_std = 0.0;         ///< standard deviation of each pixel in each frame [grey]
-  double brightness_drift = 0.0;  ///< amplitude of a slow change of brightness [-]
-  double clutter = 0.0;           ///< largest grey value of a static background [grey]
-  int delay = 0;                  ///< so many frames late [-]
-  double drop_rate = 0.0;         ///< probability that a frame is lost [-]
+  double noise_std = 0.0;  ///< standard deviation of the noise of each pixel of each image [grey]
+  double brightness_drift = 0.0;  ///< relative amplitude of a slow change of brightness [-]
+  double clutter = 0.0;           ///< largest grey value of a static background pattern [grey]
+  int delay = 0;                  ///< number of time steps by which images are delayed [-]
+  double drop_rate = 0.0;         ///< probability that an image is lost [-]
 
   template <class Visitor>
   void visit(Visitor& visitor) {
@@ -30,44 +31,48 @@ struct CameraOptions {
     visitor("drop_rate", drop_rate);
   }
 
-  /// Everything wrong with these values, in words a user can act on. Empty means valid.
+  /// Describes each invalid value and the rule that it breaks. Empty if all values are valid.
   std::vector<std::string> problems() const;
 };
 
-/// Turns what there is to see into photographs. That of the picture p at frame t is
+/// Turns rendered images into the images y that a learner receives. The rendered image p of time
+/// step t becomes
 ///
 ///   y = clamp(b_t (p + (1 - a) c) + noise_std n, 0, 1),
 ///   b_t = 1 + brightness_drift sin(2 pi t dt / 20 s + phase),   n ~ N(0, 1)
 ///
-/// value by value, with p in front of the grey clutter c, which p's cover a hides and which is the
-/// same in all runs; the phase is uniform, another one in each run. With the probability drop_rate
-/// the photograph is lost; else it comes `delay` frames late, as it was taken. With all faults at 0
-/// it is p, byte by byte.
+/// for each value of each pixel. c is a background of grey shapes, the same in all episodes of all
+/// experiments. a is the share of the pixel that the plant covers (Picture::cover), so the plant
+/// hides the background. The phase is drawn uniformly for each episode. With probability drop_rate
+/// the image is lost; all other images are delivered `delay` time steps after they were taken. With
+/// all options at 0, y equals p byte for byte.
 ///
-/// Noise has a random stream of its own, so that it changes neither brightness nor which frames are
-/// lost. Draws are fixed for libstdc++, see Plant::drawStart().
-/// Deviation: the paper's camera is perfect.
+/// The noise has its own random stream, so a change of noise_std changes neither the brightness nor
+/// the choice of lost images. The draws are reproducible for libstdc++ only, see
+/// Plant::drawStart().
+/// Deviation: the paper's camera has no disturbances.
 class Camera {
  public:
-  /// Ready for the run (0, 0, false).
-  /// @param dt  time between two frames [s]
+  /// Begins the episode (seed 0, trial 0, no evaluation).
+  /// @param dt  time between two images [s]
   /// @throws std::invalid_argument with all problems of the options
   Camera(const CameraOptions& options, double dt);
 
-  /// The next photograph is the first of a run.
+  /// Begins an episode: the next call of photograph() takes its first image.
   /// @param seed        seed of the experiment
-  /// @param trial       number of the trial, 0 is the random one
-  /// @param evaluation  the greedy run after `trial`
+  /// @param trial       number of the episode, see TrialId::trial
+  /// @param evaluation  true for the evaluation (greedy episode) that follows `trial`
   void begin(std::uint64_t seed, std::uint32_t trial, bool evaluation);
 
-  /// Takes the photograph of this time step, to be called once in each, and shows the one of
-  /// `delay` calls ago, at the start of a run that of the first call.
-  /// @return nothing if that one is lost; the first never is
-  /// @throws std::invalid_argument if there is clutter and `picture` does not know its cover
+  /// Takes the image of this time step and returns the image that was taken `delay` calls earlier.
+  /// The first `delay` calls of an episode return its first image. Call this function exactly once
+  /// in each time step.
+  /// @return the image, or nothing if it is lost; the first image of an episode is never lost
+  /// @throws std::invalid_argument if clutter is > 0 and `picture` has no cover
   std::optional<Picture> photograph(const Picture& picture);
 
-  /// A photograph in nominal brightness whose noise is the same whenever it is taken, in all runs
-  /// of all seeds: for the goal image.
+  /// Takes the goal image: at nominal brightness and with a fixed draw of the noise, so that equal
+  /// goals give equal images in all episodes of all experiments.
   /// @throws std::invalid_argument as photograph()
   Picture photographGoal(const Picture& picture);
 
@@ -76,12 +81,13 @@ class Camera {
 
   CameraOptions options_;
   double dt_;
-  std::vector<double> clutter_;  ///< c, grey in [0, 1]; drawn for the first picture [numPixels()]
-  std::mt19937_64 rng_;          ///< brightness and lost frames
+  std::vector<double> clutter_;  ///< c, grey in [0, 1], drawn at the first call [numPixels()]
+  std::mt19937_64 rng_;          ///< brightness and lost images
   std::mt19937_64 noise_;
-  double phase_ = 0.0;                        ///< of the brightness [rad]
-  std::deque<std::optional<Picture>> taken_;  ///< the one on show, then those not shown yet
-  int frame_ = 0;                             ///< t of the next photograph
+  double phase_ = 0.0;  ///< phase of the brightness [rad]
+  /// The image on show, then the images that wait for their delay.
+  std::deque<std::optional<Picture>> taken_;
+  int frame_ = 0;  ///< t of the next image
 };
 
 }  // namespace ddm

@@ -1,4 +1,4 @@
-// A plant in front of a camera: the loop that every driver closes.
+// The environment: a plant in front of a camera, with reset and step.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -15,7 +15,7 @@
 
 namespace ddm {
 
-/// Plant and camera move together: one photograph in each time step.
+/// Moves a plant and takes one camera image in each time step.
 class Environment {
  public:
   /// @throws std::invalid_argument with all problems of the options
@@ -24,13 +24,15 @@ class Environment {
         camera_(camera, plant_->info().dt),
         applied_(Eigen::VectorXd::Zero(plant_->torqueDim())) {}
 
-  /// Start and goal of a run, and its first photograph, which is never lost.
+  /// Sets the initial state and the goal of an episode, and returns its first image, which is never
+  /// lost.
   /// @param seed        seed of the experiment
-  /// @param trial       number of the trial, 0 is the random one
-  /// @param evaluation  the greedy run after `trial`
-  /// @param start       (optional) this state, digit by digit, instead of a drawn one
-  /// @throws std::invalid_argument if the start is not a state or the goal out of reach; nothing
-  ///         has changed
+  /// @param trial       number of the episode, see TrialId::trial
+  /// @param evaluation  true for the evaluation (greedy episode) that follows `trial`
+  /// @param start       (optional) initial state, taken exactly; without it the initial state is
+  ///         drawn
+  /// @throws std::invalid_argument if `start` is not a state or the goal is out of reach; the
+  ///         environment is then unchanged
   Picture reset(std::uint64_t seed, std::uint32_t trial, bool evaluation,
                 const std::optional<Eigen::VectorXd>& start = {}) {
     const Eigen::VectorXd goal = goalOf(*plant_, seed, trial, evaluation);
@@ -43,9 +45,9 @@ class Environment {
     return *camera_.photograph(plant_->render(plant_->state()));
   }
 
-  /// One time step under a constant torque.
-  /// @return what the camera shows now, or nothing if that frame is lost
-  /// @throws as Plant::step(); nothing has changed
+  /// Moves the plant by one time step under a constant torque.
+  /// @return the image that the camera delivers now, or nothing if that image is lost
+  /// @throws as Plant::step(); the environment is then unchanged
   std::optional<Picture> step(const Eigen::VectorXd& torque) {
     try {
       applied_ = plant_->step(torque);
@@ -57,22 +59,23 @@ class Environment {
     return camera_.photograph(plant_->render(plant_->state()));
   }
 
-  /// Time steps under a constant torque until a frame is seen.
-  /// @throws as Plant::step(), at the state that was reached
+  /// Repeats step() with the same torque until the camera delivers an image.
+  /// @throws as Plant::step(); the steps before the failing one stay done
   Picture stepUntilSeen(const Eigen::VectorXd& torque) {
     for (;;) {
       if (std::optional<Picture> picture = step(torque)) return *std::move(picture);
     }
   }
 
-  /// The goal of this run as the camera sees it.
+  /// The goal image of this episode, as the camera takes it.
   Picture goalImage() { return camera_.photographGoal(plant_->render(plant_->goal())); }
 
   const Plant& plant() const { return *plant_; }
-  std::uint64_t numSteps() const { return num_steps_; }  ///< since the reset
-  /// Since the reset [s].
+  std::uint64_t numSteps() const { return num_steps_; }  ///< time steps since the reset
+  /// Time since the reset [s].
   double time() const { return static_cast<double>(num_steps_) * plant_->info().dt; }
-  const Eigen::VectorXd& applied() const { return applied_; }  ///< torque of the last step, or zero
+  /// Torque of the last step, zero after a reset.
+  const Eigen::VectorXd& applied() const { return applied_; }
 
  private:
   std::unique_ptr<Plant> plant_;

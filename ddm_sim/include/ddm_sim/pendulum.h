@@ -10,7 +10,7 @@ namespace ddm {
 
 /// YAML block `plant:` of the type `pendulum`.
 struct PendulumOptions : PlantOptions {
-  double gravity = 0.0;   ///< g [m/s^2]. The paper's published runs fit 0
+  double gravity = 0.0;   ///< g [m/s^2]. 0 fits the trajectories that the authors published
   double length = 1.0;    ///< l, length of the rod [m]
   double mass = 1.0;      ///< m, mass of the rod [kg]
   double friction = 1.0;  ///< b, viscous friction [N m s/rad]
@@ -28,7 +28,7 @@ struct PendulumOptions : PlantOptions {
     look.visit(visitor);
   }
 
-  /// Everything wrong with these values, in words a user can act on. Empty means valid.
+  /// Describes each invalid value and the rule that it breaks. Empty if all values are valid.
   std::vector<std::string> problems() const;
 };
 
@@ -36,17 +36,22 @@ struct PendulumOptions : PlantOptions {
 ///
 ///   I omega' = u - b omega - m g l sin(phi) / 2,   phi' = omega,   I = m l^2 / 3
 ///
-/// phi = 0 hangs, phi = pi is up and is the goal. The angle is never wrapped. Without gravity the
-/// step is exact; with a = b / I, p1 = (1 - e^{-a dt}) / (a dt), p2 = (1 - p1) / (a dt):
+/// At phi = 0 the rod hangs down; phi = pi is upright and is the goal. The angle is never wrapped.
+/// Without gravity the step has a closed form:
 ///
 ///   phi+   = phi + dt p1 omega + dt^2 p2 u / I
 ///   omega+ = e^{-a dt} omega + dt p1 u / I
+///   a = b / I,   p1 = (1 - e^{-a dt}) / (a dt),   p2 = (1 - p1) / (a dt)
 ///
-/// which at the default values is phi+ = phi + (omega - u)(1 - e^-0.6) / 3 + 0.2 u and
-/// omega+ = e^-0.6 omega + (1 - e^-0.6) u. With gravity an adaptive Dormand-Prince method of order
-/// 5 integrates it. Its error is the distance to upright the short way round, in [0, 180] deg.
-/// Deviation: the paper names neither gravity nor a bound on the torque. Zero and 6 N m fit the
-/// trajectories that its authors published.
+/// At the default values this is
+///
+///   phi+   = phi + (omega - u)(1 - e^-0.6) / 3 + 0.2 u
+///   omega+ = e^-0.6 omega + (1 - e^-0.6) u
+///
+/// With gravity, an adaptive Dormand-Prince method of order 5 integrates the equation. The error is
+/// the angle to the goal along the shorter arc, in [0, 180] deg.
+/// Deviation: the paper states neither gravity nor a bound on the torque. Gravity 0 and a bound of
+/// 6 N m fit the trajectories that the authors published.
 class Pendulum : public Plant {
  public:
   /// @throws std::invalid_argument with all problems of the options
@@ -58,7 +63,8 @@ class Pendulum : public Plant {
   double distance(const Eigen::VectorXd& state, const Eigen::VectorXd& goal) const override;
   Picture draw(const Eigen::VectorXd& state) const override;
 
-  /// Tip of the rod, l (sin phi, -cos phi): x to the right, y upwards from the pivot [m].
+  /// Position of the tip of the rod, l (sin phi, -cos phi): x to the right, y upwards from the
+  /// pivot [m].
   Eigen::VectorXd locate(const Eigen::VectorXd& state) const override;
 
   Eigen::Vector2d advanceExactly(const Eigen::Vector2d& state, double torque) const;

@@ -1,4 +1,4 @@
-// A plant: takes a torque, moves for one time step, and can be seen.
+// The interface of a plant: the plant moves under a torque and has a rendered image.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -16,45 +16,50 @@ namespace ddm {
 
 enum class JointKind { kAngle, kLength };
 
+/// A joint of a plant: an angle [rad] or a length [m].
 struct Joint {
-  std::string name;  ///< in ground_truth/joint_states
+  std::string name;  ///< name in ground_truth/joint_states
   JointKind kind = JointKind::kAngle;
 };
 
-/// What a plant says of itself; columns, limits, units and success follow from it.
+/// Description of a plant. CSV columns, torque limits, units and the success criterion follow from
+/// it.
 struct PlantInfo {
-  std::string type = "of a test";  ///< plant/type, for messages; makePlant() fills it in
+  std::string type = "of a test";  ///< value of plant/type, for messages; makePlant() sets it
 
   std::vector<Joint> joints;  ///< in the order of their positions in the state
 
-  /// Components of a state with their units, the headers of CSV files: "angle_rad". Positions come
-  /// first, one for each joint, then their rates if the plant has them.              [stateDim()]
+  /// Names of the components of a state with their units, such as "angle_rad"; they are also the
+  /// column names of CSV files. Positions come first, one for each joint, then their rates if the
+  /// state has rates.                                                                  [stateDim()]
   std::vector<std::string> state_names;
 
-  std::vector<std::string> torque_names;  ///< the same for a torque: "torque_nm"  [torqueDim()]
+  /// Names of the components of a torque, such as "torque_nm" [torqueDim()]
+  std::vector<std::string> torque_names;
   Eigen::VectorXd max_torque;  ///< bound on each |u|, in the unit of its name [torqueDim() x 1]
   double dt = 0.2;             ///< time step [s]
-  Eigen::VectorXd start;       ///< middle of the start states                 [stateDim() x 1]
-  Eigen::VectorXd start_std;   ///< standard deviation of each component       [stateDim() x 1]
-  Eigen::VectorXd goal;        ///< state to reach and hold                    [stateDim() x 1]
-  std::string error_unit;      ///< unit of Plant::goalError(): "deg", "m", "px"
-  double tolerance = 0.0;      ///< the goal is reached where goalError() is at most this
-  int evaluation_steps = 0;    ///< time steps of a greedy run; 0: as many as a trial has
+  Eigen::VectorXd start;       ///< mean of the initial states [stateDim() x 1]
+  /// Standard deviation of each component of the initial state [stateDim() x 1]
+  Eigen::VectorXd start_std;
+  Eigen::VectorXd goal;      ///< state to reach and to hold [stateDim() x 1]
+  std::string error_unit;    ///< unit of Plant::goalError(): "deg", "m", "px"
+  double tolerance = 0.0;    ///< success: goalError() is at most this value [error_unit]
+  int evaluation_steps = 0;  ///< time steps of an evaluation; 0: the length of a trial
 
   int stateDim() const { return static_cast<int>(state_names.size()); }
   int torqueDim() const { return static_cast<int>(torque_names.size()); }
 };
 
-/// The plant that a policy controls; the paper's "system" behind the pixels.
+/// The plant that a policy controls (the "system" of the paper).
 ///
 ///   state_{t+1} = advance(state_t, clamp(u_t, -max_torque, max_torque)),   u held constant over dt
 ///
-/// "Torque" is the word for every input of a plant: the pendulum has one [N m], the moving tile two
-/// increments of position [pixels]. PlantInfo has the units.
+/// "Torque" is the name of every input of a plant: the pendulum has one torque [N m], the moving
+/// tile has two increments of position [pixels]. PlantInfo contains the units.
 ///
-/// The state serves evaluation alone; a policy sees pictures. This class checks sizes and
-/// finiteness and saturates torques, so that a derived class holds its physics and its picture and
-/// nothing else.
+/// The state is used for evaluation only; a policy receives images. The base class checks sizes and
+/// finiteness and saturates torques, so a derived class contains only its equations of motion and
+/// its renderer.
 class Plant {
  public:
   virtual ~Plant() = default;
@@ -66,79 +71,87 @@ class Plant {
   int stateDim() const { return info_.stateDim(); }
   int torqueDim() const { return info_.torqueDim(); }
 
-  /// State now, at first the middle of the start states                          [stateDim() x 1]
+  /// The current state; the mean of the initial states before the first call of setState() or
+  /// step().                                                                       [stateDim() x 1]
   const Eigen::VectorXd& state() const { return state_; }
 
-  /// Takes `state` exactly, digit by digit.
-  /// @throws std::invalid_argument if it is not [stateDim() x 1] or not finite; nothing has changed
+  /// Sets the state exactly, without rounding.
+  /// @throws std::invalid_argument if `state` is not [stateDim() x 1] or not finite; the state is
+  ///         then unchanged
   void setState(const Eigen::VectorXd& state);
 
-  /// The state to reach and hold in this trial, at first info().goal             [stateDim() x 1]
+  /// The state to reach and to hold in this episode; info().goal before the first call of
+  /// setGoal().                                                                    [stateDim() x 1]
   const Eigen::VectorXd& goal() const { return goal_; }
 
+  /// Sets the goal state of this episode.
   /// @throws std::invalid_argument as setState()
   void setGoal(const Eigen::VectorXd& goal);
 
-  /// A start state of a trial; does not set it. By default N(start, start_std^2) in each component.
-  /// Draws are fixed for libstdc++; other standard libraries implement distributions differently.
-  /// @return state                                                               [stateDim() x 1]
+  /// Draws an initial state of an episode and leaves the state of the plant unchanged. The default
+  /// implementation draws each component from N(start, start_std^2). The draws are reproducible for
+  /// libstdc++ only, because other standard libraries implement the distributions differently.
+  /// @return initial state                                                         [stateDim() x 1]
   virtual Eigen::VectorXd drawStart(std::mt19937_64& engine) const;
 
-  /// The goal of a trial; does not set it. By default the same in all trials, info().goal.
-  /// @return state                                                               [stateDim() x 1]
+  /// Draws the goal of an episode and leaves the goal of the plant unchanged. The default
+  /// implementation returns info().goal.
+  /// @return goal state                                                            [stateDim() x 1]
   virtual Eigen::VectorXd drawGoal(std::mt19937_64& engine) const;
 
-  /// Moves by dt under a constant torque.
-  /// @param torque  u, saturated at +-max_torque                                [torqueDim() x 1]
-  /// @return the torque as it was applied, after the saturation                 [torqueDim() x 1]
-  /// @throws std::invalid_argument if it is not [torqueDim() x 1] or not finite
-  /// @throws std::range_error if the state would not be finite
-  /// @throws std::logic_error if advance() returns another number of components. In each case
-  ///         nothing has changed
+  /// Moves the plant by dt under a constant torque.
+  /// @param torque  u, saturated at +-max_torque                                  [torqueDim() x 1]
+  /// @return the applied torque, after the saturation                             [torqueDim() x 1]
+  /// @throws std::invalid_argument if `torque` is not [torqueDim() x 1] or not finite
+  /// @throws std::range_error if the next state would not be finite
+  /// @throws std::logic_error if advance() returns another number of components
+  /// After an exception the state is unchanged.
   Eigen::VectorXd step(const Eigen::VectorXd& torque);
 
-  /// Distance of `state` to goal(), >= 0 [info().error_unit].
+  /// Distance from `state` to goal(), >= 0 [info().error_unit].
   /// @throws std::invalid_argument as setState()
   double goalError(const Eigen::VectorXd& state) const;
 
-  /// The goal of a run that is to reach this place, for plants that draw their goals as such: a
-  /// target, from which the state to reach follows. Does not set it.
-  /// @param target  what and in which unit is the plant's own: the reacher has x, y [m]
-  /// @throws std::invalid_argument if this plant has no targets, or cannot reach this one
+  /// The goal state that belongs to a target, for plants that draw targets and derive the goal
+  /// state from them. The goal of the plant is unchanged.
+  /// @param target  defined by the plant: the reacher uses (x, y) of its finger [m]
+  /// @throws std::invalid_argument if the plant has no targets or cannot reach this target
   virtual Eigen::VectorXd goalAt(const Eigen::VectorXd& target) const;
 
-  /// Reward of one frame of the physics, for reports; nothing learns from it. Empty: the plant has
-  /// none.
-  /// @param state   that the frame has led to                                    [stateDim() x 1]
-  /// @param torque  as it was applied in this frame                             [torqueDim() x 1]
+  /// Reward of one physics step. Rewards are reported, and no learning method uses them. Empty if
+  /// the plant has no reward.
+  /// @param state   state after the physics step                                   [stateDim() x 1]
+  /// @param torque  torque that was applied in the physics step                   [torqueDim() x 1]
   virtual std::optional<double> reward(const Eigen::VectorXd& state,
                                        const Eigen::VectorXd& torque) const;
 
-  /// Sum of the rewards of all frames of the steps that start in `state`, under one torque.
-  /// @param torque     as for step()                                            [torqueDim() x 1]
-  /// @param num_steps  more than one where frames that a camera would have seen are lost
+  /// Sum of the rewards of all physics steps of `num_steps` time steps that begin in `state`, under
+  /// a constant torque.
+  /// @param torque     saturated as in step()                                     [torqueDim() x 1]
+  /// @param num_steps  > 1 if the camera loses the images in between
   /// @throws as step()
   std::optional<double> stepReward(const Eigen::VectorXd& state, const Eigen::VectorXd& torque,
                                    int num_steps = 1) const;
 
-  /// What a perfect camera sees of `state`; always of the same size.
+  /// Renders the image of `state` without any disturbance. The size is always the same.
   /// @throws std::invalid_argument as setState()
-  /// @throws std::logic_error if draw() returns another number of bytes than its size says
+  /// @throws std::logic_error if draw() returns a number of bytes that does not match its size
   Picture render(const Eigen::VectorXd& state) const;
 
-  /// The camera of render() now; empty: it is none that a lens could be.
+  /// The camera of render(). Empty if the renderer has no pinhole model.
   virtual std::optional<CameraModel> cameraModel() const { return std::nullopt; }
 
-  /// The camera of view(); empty: there is no view.
+  /// The camera of view(). Empty if the plant has no view.
   virtual std::optional<CameraModel> viewModel() const { return std::nullopt; }
 
-  /// A large picture of `state` for people, where viewModel() says that there is one.
-  /// @throws std::invalid_argument as setState(); std::logic_error if there is none
+  /// Renders a large image of `state` for people. Only plants with a viewModel() have one.
+  /// @throws std::invalid_argument as setState()
+  /// @throws std::logic_error if the plant has no view
   virtual Picture view(const Eigen::VectorXd& state) const;
 
-  /// Where the moving parts are in the picture: what a learner can know of `state` from one image.
-  /// Origin, directions and unit are the plant's own: the pendulum gives the tip of its rod [m].
-  /// @return coordinates, always as many                                                   [n x 1]
+  /// Positions of the moving parts in the image: the part of `state` that a single image shows. The
+  /// plant defines origin, directions and unit: the pendulum returns the tip of its rod [m].
+  /// @return coordinates, the same number for every state                                   [n x 1]
   /// @throws std::invalid_argument as setState()
   Eigen::VectorXd visiblePosition(const Eigen::VectorXd& state) const;
 
@@ -146,14 +159,22 @@ class Plant {
   explicit Plant(PlantInfo info);
 
  private:
-  /// The physics: the state dt after `state`. Sizes and finiteness are checked, torque saturated.
+  /// Equations of motion: returns the state dt after `state`. The caller has checked sizes and
+  /// finiteness and has saturated the torque.
   virtual Eigen::VectorXd advance(const Eigen::VectorXd& state,
                                   const Eigen::VectorXd& torque) const = 0;
 
-  /// stepReward() of a plant with rewards: by default that of one frame, which the step is.
+  /// Sum of the rewards of one time step. The default implementation treats the time step as one
+  /// physics step.
   virtual double rewardOfStep(const Eigen::VectorXd& state, const Eigen::VectorXd& torque) const;
+
+  /// The error of `state` relative to `goal`, see goalError().
   virtual double distance(const Eigen::VectorXd& state, const Eigen::VectorXd& goal) const = 0;
+
+  /// The image of `state`, see render().
   virtual Picture draw(const Eigen::VectorXd& state) const = 0;
+
+  /// The positions of the moving parts, see visiblePosition().
   virtual Eigen::VectorXd locate(const Eigen::VectorXd& state) const = 0;
 
   Eigen::VectorXd saturated(const Eigen::VectorXd& torque) const;
@@ -163,45 +184,49 @@ class Plant {
   Eigen::VectorXd goal_;
 };
 
-/// Random stream of the start states: fixed by its arguments, another one for each trial and for
-/// the greedy evaluation after it, and independent of the streams of all other roles.
+/// Random stream for initial states. The arguments determine the stream. Each episode has its own
+/// stream, which is independent of the streams for all other purposes.
 /// @param seed        seed of the experiment
-/// @param trial       number of the trial, 0 is the random one
-/// @param evaluation  the greedy run after `trial`
+/// @param trial       number of the episode, see TrialId::trial
+/// @param evaluation  true for the evaluation (greedy episode) that follows `trial`
 std::mt19937_64 startStream(std::uint64_t seed, std::uint32_t trial, bool evaluation);
 
-/// The goal of a run, drawn from a stream of its own; arguments as above.
+/// Draws the goal of an episode from a random stream of its own; arguments as for startStream().
 Eigen::VectorXd goalOf(const Plant& plant, std::uint64_t seed, std::uint32_t trial,
                        bool evaluation);
 
-/// Makes plants of one kind, with the options that it holds.
+/// Constructs plants of one type from the options that the maker holds.
 class PlantMaker {
  public:
   virtual ~PlantMaker() = default;
 
-  virtual std::string type() const = 0;  ///< `plant/type`, for messages
+  virtual std::string type() const = 0;  ///< value of `plant/type`, for messages
 
+  /// Constructs a plant.
   /// @throws std::invalid_argument if the options do not fit together
   virtual std::unique_ptr<Plant> make() const = 0;
 };
 
-/// A plant in the middle of its start states. Its PlantInfo must have
+/// Constructs a plant and checks its PlantInfo. The rules are:
 ///
-///   - as many names, limits, starts and goals as components, 1 to 1000 of each, all finite; names
-///     differ and have neither blanks nor commas nor quotes, since they head columns
-///   - no more joints than components of the state, and at least one
-///   - dt > 0, limits > 0, start_std >= 0, tolerance > 0, and an error_unit
+/// - The numbers of names, limits, initial values and goal values equal the number of components,
+///   which is 1 to 1000. All values are finite. Names differ and contain no blanks, commas or
+///   quotes, because they are column names.
+/// - The number of joints is at least one and at most the number of components of the state.
+/// - dt > 0, max_torque > 0, start_std >= 0, tolerance > 0, and error_unit is not empty.
 ///
-/// Class Plant checks what the plant returns while it runs. test/every_plant_test.cpp tests all other
-/// rules, also of a plant of another package.
+/// Class Plant checks the values that the plant returns while it runs. test/every_plant_test.cpp
+/// tests all other rules and can also test a plant of another package.
 /// @throws std::invalid_argument with the problems of the options, or with the type and all rules
 ///         that its plant breaks
 std::unique_ptr<Plant> makePlant(const PlantMaker& maker);
 
-/// Whether a name can head a column of CSV files: neither blanks nor commas nor quotes, ASCII alone.
+/// Whether a name can be a column name of a CSV file: ASCII characters without blanks, commas and
+/// quotes.
 bool usableName(const std::string& name);
 
-/// "[1 2 3]", of many the first ten: a million of them, sent by mistake, must not fill the logs.
+/// Formats numbers as "[1 2 3]". Shows at most ten numbers, so that a message with a million
+/// numbers does not fill the logs.
 std::string fewNumbers(const Eigen::VectorXd& numbers);
 
 }  // namespace ddm

@@ -1,4 +1,4 @@
-// What the blocks of all plants have in common. One struct = one YAML block.
+// Parameters that the YAML blocks of all plants have in common.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -13,14 +13,15 @@
 
 namespace ddm {
 
-/// The keys of the block `plant:` that every plant has. A list has a number for each motor or each
-/// component of the state; a list of one number holds for all of them.
+/// The keys that every plant has in its block `plant:`. A list has one number for each motor or for
+/// each component of the state; a list with one number applies that number to all of them.
 struct PlantOptions {
-  std::string type;                        ///< which plant; PACKAGE/CLASS is a plugin
-  std::vector<double> max_torque = {6.0};  ///< bound on each |u| [the plant's unit]
-  double dt = 0.2;                         ///< time step, u is held constant over it [s]
-  std::vector<double> start_std = {0.1};   ///< standard deviation of each component of the start
-  int picture_size = 51;                   ///< width and height of the picture [pixels]
+  std::string type;                        ///< type of the plant; PACKAGE/CLASS names a plugin
+  std::vector<double> max_torque = {6.0};  ///< bound on each |u| [unit of the plant]
+  double dt = 0.2;                         ///< time step, over which u is constant [s]
+  /// Standard deviation of each component of the initial state.
+  std::vector<double> start_std = {0.1};
+  int picture_size = 51;  ///< width and height of the rendered image [pixels]
 
   template <class Visitor>
   void visit(Visitor& visitor) {
@@ -31,7 +32,7 @@ struct PlantOptions {
     visitor("picture_size", picture_size);
   }
 
-  /// Everything wrong with these values, in words a user can act on. Empty means valid.
+  /// Describes each invalid value and the rule that it breaks. Empty if all values are valid.
   std::vector<std::string> problems() const {
     OptionChecks plant("plant");
     const auto each = [&plant](const std::vector<double>& numbers, const char* key,
@@ -40,7 +41,8 @@ struct PlantOptions {
       for (const double number : numbers) plant.require(ok(number), key, rule, number);
     };
     each(max_torque, "max_torque", "be > 0 and finite", isPositive);
-    // Stamps count whole nanoseconds, and no camera can keep a step below a millisecond.
+    // Stamps count whole nanoseconds, and no camera delivers images at intervals below a
+    // millisecond.
     plant.requireWithin("dt", dt, 1e-3, 10.0);
     each(start_std, "start_std", "be >= 0 and finite", isNotNegative);
     plant.requireWithin("picture_size", picture_size, 4, 1024);
@@ -48,9 +50,9 @@ struct PlantOptions {
   }
 };
 
-/// A number for each of `count` components.
-/// @param name  of the option, for the message
-/// @throws std::invalid_argument if there is neither one number nor one for each
+/// Expands a list to one number for each of `count` components.
+/// @param name  name of the option, for the message
+/// @throws std::invalid_argument if the list has neither one number nor `count` numbers
 inline Eigen::VectorXd forEach(const std::vector<double>& numbers, int count,
                                const std::string& name) {
   if (numbers.size() == 1) return Eigen::VectorXd::Constant(count, numbers.front());

@@ -1,4 +1,4 @@
-// Picture of rods with soft edges: the link of a pendulum, the links of an arm.
+// Renderer for rods with soft edges: the link of a pendulum, the links of an arm.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -10,10 +10,11 @@
 
 namespace ddm {
 
-/// From the centre of the image, where the first rod begins, to its edge [m].
+/// Half the width of the scene [m]. The image shows [-kHalfExtent, kHalfExtent] in both directions,
+/// and the first rod begins at its centre.
 constexpr double kHalfExtent = 1.2;
 
-/// How rods look. Keys of the block `plant` of each plant that is made of rods.
+/// Appearance of rods. These keys belong to the block `plant` of each plant that consists of rods.
 struct RodLook {
   double rod_half_width = 0.1;  ///< half the width of a rod [m]
   double edge_softness = 0.2;   ///< width over which grey falls from 1 to 0 [m]
@@ -24,12 +25,13 @@ struct RodLook {
     visitor("edge_softness", edge_softness);
   }
 
-  /// Everything wrong with these values, in words a user can act on. Empty means valid.
+  /// Describes each invalid value and the rule that it breaks. Empty if all values are valid.
   std::vector<std::string> problems() const;
 };
 
-/// A rod from `start` to start + length (sin angle, -cos angle): angle 0 points down,
-/// counter-clockwise is positive. The origin is the image centre, y points upwards.
+/// A rod from `start` to start + length (sin angle, -cos angle). A rod with angle 0 points down;
+/// positive angles turn counter-clockwise. The origin is the centre of the image, x points to the
+/// right and y points upwards.
 struct Rod {
   Eigen::Vector2d start;  ///< [m]
   double angle;           ///< [rad]
@@ -42,23 +44,24 @@ struct Rod {
 ///
 ///   grey(p) = clamp((rod_half_width - distance(p, nearest rod)) / edge_softness + 1/2, 0, 1)
 ///
-/// with p the centre of a pixel. The distance is exact and nothing is sampled: the image is a
-/// continuous function of the angles, and with the default softness one degree changes it.
-/// Deviation: the paper does not describe its renderer; this one is ours.
+/// where p is the centre of a pixel. The distance is computed in closed form, so the image is a
+/// continuous function of the angles. With the default softness, a change of one degree changes the
+/// image.
+/// Deviation: the paper does not describe its renderer; this one is our choice.
 class RodRenderer {
  public:
   /// @param size  width and height of the image [pixels]
   /// @throws std::invalid_argument if the look has problems
   RodRenderer(int size, const RodLook& look);
 
-  /// @param rods  one or more, all values finite
+  /// @param rods  at least one rod; all values finite
   Picture render(const std::vector<Rod>& rods) const;
 
  private:
   int size_;
   double rod_half_width_;
   double edge_softness_;
-  Eigen::ArrayXd offsets_;  ///< x of the pixel centres of a row, from left to right [m]     [size]
+  Eigen::ArrayXd offsets_;  ///< x of the pixel centres of a row, from left to right [m] [size]
 };
 
 }  // namespace ddm

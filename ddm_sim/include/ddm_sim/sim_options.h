@@ -1,4 +1,4 @@
-// How simulated time passes. YAML blocks `sim:` and `show:`.
+// Parameters of simulated time. YAML blocks `sim:` and `show:`.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -11,8 +11,9 @@ namespace ddm {
 
 /// Block `sim`.
 struct SimOptions {
-  bool lockstep = true;   ///< true: an image waits for its torque; false: real time
-  double watchdog = 5.0;  ///< lock-step: wall time that a torque may take [s]
+  /// True: simulated time stops until the torque for the image arrives. False: real time.
+  bool lockstep = true;
+  double watchdog = 5.0;  ///< lock-step: longest wall time between an image and its torque [s]
 
   template <class Visitor>
   void visit(Visitor& visitor) {
@@ -20,7 +21,7 @@ struct SimOptions {
     visitor("watchdog", watchdog);
   }
 
-  /// Everything wrong with these values, in words a user can act on. Empty means valid.
+  /// Describes each invalid value and the rule that it breaks. Empty if all values are valid.
   std::vector<std::string> problems() const {
     OptionChecks sim("sim");
     sim.requireWithin("watchdog", watchdog, 0.1, 86400.0);
@@ -28,9 +29,10 @@ struct SimOptions {
   }
 };
 
-/// Block `show`: what changes nothing of what happens.
+/// Block `show`: parameters that do not change the results.
 struct ShowOptions {
-  double frame_rate = 0.0;  ///< lock-step: most frames in a second of wall time; 0: any [1/s]
+  /// In lock-step: largest number of images per second of wall time; 0: no limit [1/s]
+  double frame_rate = 0.0;
 
   template <class Visitor>
   void visit(Visitor& visitor) {

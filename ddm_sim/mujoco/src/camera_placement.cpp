@@ -1,4 +1,4 @@
-// Where a camera has to stand to see all poses of a model.
+// Finds a camera position from which all poses of a model are visible.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "camera_placement.h"
 
@@ -16,11 +16,12 @@ namespace {
 using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 
-constexpr double kMargin = 0.06;      // of half the image, on each side
-constexpr double kAlmostBest = 0.05;  // of the motion that a direction shows
-constexpr std::size_t kMaxTried = 6;  // directions from which images are drawn
+constexpr double kMargin = 0.06;  // margin on each side, in halves of the image [-]
+// A direction this close to the largest share of visible motion is tried, too [-]
+constexpr double kAlmostBest = 0.05;
+constexpr std::size_t kMaxTried = 6;  // largest number of directions from which images are drawn
 
-/// Half the sides of the box around a geom, in its own frame.
+/// Half the sides of the box around a geom, in the frame of the geom [m].
 Vector3d halfSides(const mjModel& m, int geom) {
   const mjtNum* const size = m.geom_size + 3 * geom;
   switch (m.geom_type[geom]) {
@@ -46,7 +47,8 @@ Vector3d halfSides(const mjModel& m, int geom) {
   return half.cast<double>();
 }
 
-/// Drawn geoms that a joint can move; where none of them is drawn, all.
+/// Drawn geoms that a joint can move. If no such geom is drawn, returns all geoms that a joint can
+/// move.
 std::vector<int> movingGeoms(const mjModel& m) {
   std::vector<int> all, drawn;
   for (int i = 0; i < m.ngeom; ++i) {
@@ -64,7 +66,8 @@ bool moves(const mjModel& m, int joint, int body) {
   return false;
 }
 
-/// Share of a joint's motion that is seen from each direction; least over all joints.
+/// For each direction: share of a joint's motion that is visible, minimum over all joints
+/// [directions x 1].
 Eigen::VectorXd motionSeen(const mjModel& m, const Mechanism& mechanism,
                            const std::vector<Eigen::VectorXd>& poses,
                            const std::vector<Vector3d>& directions) {
@@ -93,8 +96,8 @@ Eigen::VectorXd motionSeen(const mjModel& m, const Mechanism& mechanism,
   return (seen * scale.asDiagonal()).rowwise().minCoeff();
 }
 
-/// From the model to the camera: along the axes of the world and of the joints, then from above at
-/// an angle.
+/// Unit vectors from the model to possible cameras: along the axes of the world and of the joints,
+/// then from 30 and 60 degrees above the horizon.
 std::vector<Vector3d> directionsOf(const mjModel& m, const mjData& placed) {
   std::vector<Vector3d> directions = {{0, -1, 0}, {0, 0, 1}, {1, 0, 0}, {-1, 0, 0}, {0, 1, 0}};
   for (int i = 0; i < m.njnt; ++i) {
@@ -117,17 +120,18 @@ std::vector<Vector3d> directionsOf(const mjModel& m, const mjData& placed) {
   return directions;
 }
 
-/// Numbers for people: to a thousandth of the distance.
+/// Rounds a point to about a thousandth of the distance, so that people can read the numbers.
 Vector3d rounded(const Vector3d& point, double distance) {
   const double unit = std::pow(10.0, std::floor(std::log10(distance)) - 3.0);
   return (point / unit).array().round() * unit;
 }
 
-/// `look` from this direction, so far away that the corners fit into the image, with a margin.
+/// Returns `look` with a camera in this direction from the model, at the distance at which all
+/// corners fit into the image with a margin.
 RenderOptions lookFrom(const Vector3d& direction, const Matrix3Xd& corners, RenderOptions look) {
   const bool vertical = direction.head<2>().isZero();
   const Vector3d above = vertical ? Vector3d::UnitY() : Vector3d::UnitZ();
-  Eigen::Matrix3d axes;  // right, up and towards the camera
+  Eigen::Matrix3d axes;  // rows: right, up and towards the camera
   axes.row(0) = above.cross(direction).normalized();
   axes.row(1) = direction.cross(axes.row(0).transpose());
   axes.row(2) = direction;
@@ -144,7 +148,7 @@ RenderOptions lookFrom(const Vector3d& direction, const Matrix3Xd& corners, Rend
   return look;
 }
 
-/// Mean over the pixels of how much each differs between poses.
+/// Standard deviation of each pixel over several poses, averaged over all pixels.
 double changeOfImages(const MujocoModel& model, const Mechanism& mechanism,
                       const std::vector<Eigen::VectorXd>& poses, const RenderOptions& look) {
   constexpr int kPoses = 8;
@@ -207,7 +211,8 @@ RenderOptions placedCamera(const MujocoModel& model, const Mechanism& mechanism,
     ++tried;
     const RenderOptions from_here = lookFrom(directions[i], corners, look);
     const double shown = changeOfImages(model, mechanism, poses, from_here);
-    if (shown <= 1.1 * most) continue;  // the more usual direction comes first
+    // Earlier directions are more usual: a later one must be clearly better.
+    if (shown <= 1.1 * most) continue;
     most = shown;
     best = from_here;
   }

@@ -1,4 +1,4 @@
-// Where a camera has to stand to see all poses of a model.
+// Finds a camera position from which all poses of a model are visible.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -11,13 +11,13 @@
 
 namespace ddm {
 
-/// Corners of the boxes around all drawn shapes that a joint can move, in the world [m]  [3 x n]
+/// Corners of the boxes around all drawn shapes that a joint can move, in the world [m]  [3 x 8 n].
 Eigen::Matrix3Xd movingCorners(const mjModel& m, const mjData& placed);
 
-/// The camera that sees all of these poses from the direction that shows the motion of each joint
-/// best. Of a mechanism whose joints move it in one plane, this is the perpendicular of that plane.
-/// @param poses  positions of all joints, at least eight
-/// @param look   how images are drawn; `position` and `look_at` are filled in
+/// Returns a camera that sees all poses, from the direction that shows the motion of each joint
+/// best. For a mechanism that moves in one plane this direction is perpendicular to the plane.
+/// @param poses  positions of all joints, at least eight poses
+/// @param look   how images are drawn; the function fills in `position` and `look_at`
 RenderOptions placedCamera(const MujocoModel& model, const Mechanism& mechanism,
                            const std::vector<Eigen::VectorXd>& poses, const RenderOptions& look);
 

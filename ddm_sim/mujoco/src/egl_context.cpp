@@ -1,4 +1,4 @@
-// OpenGL without a screen: an EGL context on no surface.
+// Implements OpenGL without a screen, through an EGL context that has no surface.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "egl_context.h"
 
@@ -24,19 +24,23 @@ constexpr unsigned int kVersion = 0x1F02;              // GL_VERSION
   throw std::runtime_error(message.str());
 }
 
-/// A function of OpenGL or EGL by its name; null if there is none.
+/// Address of a function of OpenGL or EGL. Null if the function does not exist.
 template <class Function>
 Function openGl(const char* name) {
   return reinterpret_cast<Function>(eglGetProcAddress(name));
 }
 
-/// The one display of this process. It stays open until the process ends: drivers crash if they are
-/// closed while a context of another thread lives. Mesa's llvmpipe draws on the caller's thread
-/// unless LP_NUM_THREADS asks for more: with threads of its own, version 22.3.6 has crashed (in a
-/// search of the resources of a scene), and small images are not drawn faster. Software draws unless
-/// LIBGL_ALWAYS_SOFTWARE says otherwise: each graphics card draws other pixels, which are new to a
-/// model that was trained on the images of another one.
-/// @throws std::runtime_error; the next call tries again
+/// Opens the only EGL display of this process. The display stays open until the process ends,
+/// because drivers crash if a display is closed while another thread has a context.
+///
+/// LP_NUM_THREADS=0: Mesa's llvmpipe draws on the caller's thread. With threads of its own, version
+/// 22.3.6 of Mesa has crashed (while it searched the resources of a scene), and small images are
+/// not drawn faster.
+///
+/// LIBGL_ALWAYS_SOFTWARE=1: the CPU draws. Each graphics card draws slightly different pixels, and
+/// a model that was trained on the images of one driver would get unfamiliar images from another
+/// driver.
+/// @throws std::runtime_error naming the step that fails; the next call tries again
 EGLDisplay openDisplay() {
   setenv("LIBGL_ALWAYS_SOFTWARE", "1", /*overwrite=*/0);
   setenv("LP_NUM_THREADS", "0", /*overwrite=*/0);

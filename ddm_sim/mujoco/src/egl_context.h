@@ -1,4 +1,4 @@
-// OpenGL without a screen: an EGL context on no surface.
+// Class EglContext: OpenGL without a screen, through an EGL context that has no surface.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -8,11 +8,12 @@
 
 namespace ddm {
 
-/// A context of its own, current on a thread only while a Current is alive there. OpenGL calls
-/// on a thread without a context do nothing and report nothing, so nothing else makes it current.
+/// Owns one OpenGL context. The context is current on a thread only while an object of class
+/// Current exists there. OpenGL calls on a thread without a current context do nothing and report
+/// no error; class Current is therefore the only code that makes a context current.
 class EglContext {
  public:
-  /// @throws std::runtime_error naming the step that failed, and what helps
+  /// @throws std::runtime_error naming the step that failed and the remedy
   EglContext();
   ~EglContext();
   EglContext(const EglContext&) = delete;

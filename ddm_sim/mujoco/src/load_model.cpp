@@ -1,8 +1,8 @@
-// Compiles a model, and tries it in a process of its own first.
+// Compiles a model, after a separate process has tried it.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "load_model.h"
 
-// mjxmacro.h has the names and sizes of all arrays of a model.
+// mjxmacro.h lists the names and sizes of all arrays of a model.
 #include <fcntl.h>
 #include <mujoco/mjxmacro.h>
 #include <sys/resource.h>
@@ -33,9 +33,10 @@ namespace fs = std::filesystem;
 
 void throwError(const char* text) { throw std::runtime_error(std::string("MuJoCo: ") + text); }
 
-void ignoreWarning(const char* /*text*/) {}  // mjData::warning counts them, see requireStable()
+// mjData::warning counts warnings, see MujocoPhysics::requireStable().
+void ignoreWarning(const char* /*text*/) {}
 
-constexpr std::size_t kStlHeader = 84;  // with the number of triangles [bytes]
+constexpr std::size_t kStlHeader = 84;  // header and number of triangles [bytes]
 constexpr std::size_t kStlTriangle = 50;
 
 template <class Value>
@@ -45,15 +46,15 @@ void append(std::string* bytes, Value value) {
   bytes->append(raw, sizeof(value));
 }
 
-/// Of a binary file with the number of triangles that this one has [bytes].
+/// Size that a binary STL file must have, from the number of triangles in its header [bytes].
 std::size_t sizeOfStl(const std::string& bytes) {
   std::uint32_t triangles = 0;
   if (bytes.size() >= kStlHeader) std::memcpy(&triangles, bytes.data() + 80, sizeof(triangles));
   return kStlHeader + kStlTriangle * std::size_t{triangles};
 }
 
-/// MuJoCo reads binary STL alone. Some binary files begin as ASCII files do, so that the size
-/// decides.
+/// Whether an STL file is in ASCII format, which MuJoCo cannot read. Some binary files begin with
+/// "solid" like ASCII files; the size of the file then decides.
 bool isAsciiStl(const std::string& bytes) {
   if (bytes.rfind("solid", 0) != 0 || bytes.find("facet") == std::string::npos) return false;
   return bytes.size() != sizeOfStl(bytes);
@@ -74,14 +75,15 @@ std::string binaryStl(const std::string& ascii) {
   std::string binary(80, '\0');
   append(&binary, triangles);
   for (std::uint32_t i = 0; i < triangles; ++i) {
-    for (int k = 0; k < 3; ++k) append(&binary, 0.0F);  // MuJoCo computes the normal
+    for (int k = 0; k < 3; ++k) append(&binary, 0.0F);  // MuJoCo computes the normal itself
     for (int k = 0; k < 9; ++k) append(&binary, corners[9 * std::size_t{i} + k]);
     append(&binary, std::uint16_t{0});
   }
   return binary;
 }
 
-/// Files in memory, which MuJoCo finds by their name without a folder. 2 MB, too much for a stack.
+/// Files in memory. MuJoCo finds them by their name without a folder. The structure has 2 MB, too
+/// much for the stack.
 using MemoryFiles = std::unique_ptr<mjVFS, void (*)(mjVFS*)>;
 
 MemoryFiles noFiles() {
@@ -124,7 +126,8 @@ ModelPointer compile(const ModelText& model) {
     }
     add(mesh.first, ascii ? binaryStl(bytes) : bytes, files.get());
   }
-  // A name that no included file has: MuJoCo would take the text in memory for that file.
+  // No included file has this name. With the name of an included file, MuJoCo would read the text
+  // in memory in its place.
   const std::string path =
       (fs::absolute(model.path).parent_path() / "model text.in memory").string();
   add(path, model.text, files.get());
@@ -134,7 +137,7 @@ ModelPointer compile(const ModelText& model) {
   return {compiled, mj_deleteModel};
 }
 
-/// Compiles a model, moves it by a few frames and updates its scene, in this process.
+/// Compiles a model, simulates a few physics steps and updates the scene, in this process.
 void tryHere(const ModelText& text) {
   const auto model = compile(text);
   const mjModel& m = *model;
@@ -164,18 +167,21 @@ void limit(int resource, rlim_t value) {
   setrlimit(static_cast<__rlimit_resource_t>(resource), &both);
 }
 
-/// Of this process now [bytes].
+/// Size of this process's address space [bytes].
 rlim_t addressSpace() {
   rlim_t pages = 0;
   std::ifstream("/proc/self/statm") >> pages;
   return pages * static_cast<rlim_t>(sysconf(_SC_PAGESIZE));
 }
 
-/// What the child process does: writes `ok` or a reason, and ends without cleaning up.
+/// Body of the child process: writes "ok" or the reason of a failure to the pipe `told`, and exits
+/// without running destructors.
 [[noreturn]] void tryAndTell(const ModelText& model, int told) {
-  constexpr rlim_t kMemory = rlim_t{4} << 30;  // more than this process has already [bytes]
-  constexpr rlim_t kComputing = 60;            // [s]
-  constexpr unsigned int kWaiting = 300;       // for a loaded machine or a file that never ends [s]
+  // In addition to the present size of the process [bytes]
+  constexpr rlim_t kMemory = rlim_t{4} << 30;
+  constexpr rlim_t kComputing = 60;  // limit of processor time [s]
+  // Limit of real time, for a busy machine or a file that never ends [s]
+  constexpr unsigned int kWaiting = 300;
   std::signal(SIGINT, SIG_DFL);
   limit(RLIMIT_AS, addressSpace() + kMemory);
   limit(RLIMIT_CPU, kComputing);
@@ -201,7 +207,7 @@ rlim_t addressSpace() {
   _exit(0);
 }
 
-/// As tryHere(), in a process of its own.
+/// Runs tryHere() in a child process.
 void tryInOwnProcess(const ModelText& model) {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) {
@@ -229,7 +235,7 @@ void tryInOwnProcess(const ModelText& model) {
   const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
   if (signal == SIGXCPU || signal == SIGALRM || signal == SIGKILL) {
     refuse("MuJoCo ", mj_versionString(),
-           " did not finish reading it within a minute: make its meshes and textures smaller");
+           " did not finish reading it in time: make its meshes and textures smaller");
   }
   refuse("MuJoCo ", mj_versionString(), " crashes on it (",
          signal == 0 ? "it ends the process" : strsignal(signal),
@@ -261,7 +267,7 @@ DataPointer makeData(const mjModel& model) {
     DataPointer data(mj_makeData(&model), mj_deleteData);
     if (data) return data;
   } catch (const std::runtime_error&) {
-    // Reported below.
+    // The error is thrown below.
   }
   refuse("there is not enough memory for its workspace of ", model.nstack / 131072,
          " MB: give it a smaller <size nstack, njmax, nconmax>");

@@ -1,4 +1,4 @@
-// Compiles a model, and tries it in a process of its own first.
+// Compiles a model, after a separate process has tried it.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -11,28 +11,29 @@
 
 namespace ddm {
 
-/// A model as MuJoCo is given it.
+/// The text of a model and the files that it uses.
 struct ModelText {
-  std::string path;  ///< of the model file, from whose folder MuJoCo finds others
+  std::string path;  ///< path of the model file; MuJoCo searches other files from its folder
   std::string text;  ///< MJCF or URDF
-  std::vector<std::pair<std::string, std::string>> meshes;  ///< name in the text, and its file
+  /// Pairs of a mesh's name in the text and its file.
+  std::vector<std::pair<std::string, std::string>> meshes;
 };
 
 using ModelPointer = std::unique_ptr<mjModel, void (*)(mjModel*)>;
 using DataPointer = std::unique_ptr<mjData, void (*)(mjData*)>;
 
-/// The whole file.
+/// Content of the whole file.
 /// @throws std::invalid_argument with the path if it cannot be read
 std::string readModelFile(const std::string& path);
 
-/// Compiles a model, after a process of its own has compiled it, moved it by a few frames and
-/// updated its scene: MuJoCo may crash, hang or fill the memory there.
-/// @throws std::invalid_argument with MuJoCo's reason, or with what became of that process, or naming
-///         an array with a number that is not finite
-/// @throws std::runtime_error if there can be no other process
+/// Compiles a model. Before that, a child process compiles the model, simulates a few physics steps
+/// and updates the scene, because MuJoCo may crash, hang or fill the memory.
+/// @throws std::invalid_argument with MuJoCo's reason, or with the way in which the child process
+///         ended, or naming an array that has a number that is not finite
+/// @throws std::runtime_error if the child process cannot be started
 ModelPointer loadModel(const ModelText& model);
 
-/// The workspace in which a model moves.
+/// Memory for the simulation of a model.
 /// @throws std::invalid_argument if there is not enough memory
 DataPointer makeData(const mjModel& model);
 

@@ -1,4 +1,4 @@
-// A model at rest: where its joints may be, and the loads on them.
+// Implements a model at rest: the ranges of its joints and the loads on them.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mechanism.h"
 
@@ -23,7 +23,8 @@ Mechanism::Mechanism(const std::shared_ptr<const MujocoModel>& model)
     joint.kind = m.jnt_type[i] == mjJNT_HINGE ? JointKind::kAngle : JointKind::kLength;
     joint.limited = m.jnt_limited[i] != 0;
     joint.effort = model->effortLimit(joint.name).value_or(0.0);
-    const double reach = joint.isHinge() ? kPi : 0.0;  // a slide's follows from the robot's size
+    // showSlidesInPart() sets the range of a slide.
+    const double reach = joint.isHinge() ? kPi : 0.0;
     joint.lower = joint.limited ? m.jnt_range[2 * i] : m.qpos0[i] - reach;
     joint.upper = joint.limited ? m.jnt_range[2 * i + 1] : m.qpos0[i] + reach;
     joint.shown_lower = joint.lower;
@@ -102,7 +103,8 @@ VectorXd Mechanism::highest(const std::vector<VectorXd>& poses) const {
   return followed(*std::max_element(poses.begin(), poses.end(), less), 1.0);
 }
 
-/// Follows the energy down (sign -1) or up (1). Up, that of springs would have no end.
+/// Follows the gradient to a minimum (sign -1) or maximum (sign 1) of the potential energy. The
+/// maximum excludes the energy of springs, which has no upper bound.
 VectorXd Mechanism::followed(VectorXd position, double sign) const {
   const bool springs = sign < 0.0;
   double step = 0.1, best = sign * energy(position, springs);
@@ -125,10 +127,12 @@ VectorXd Mechanism::followed(VectorXd position, double sign) const {
   return position;
 }
 
-/// The side of the space that the robot needs without its slides is its size. Slides that are much
-/// longer, or endless, would make the robot tiny in the image.
+/// Limits the range of slides that the camera shows. The size of the robot is the largest side of
+/// the space that the robot needs with its slides at rest. A slide that is much longer than this
+/// size, or endless, would make the robot tiny in the image.
 void Mechanism::showSlidesInPart() {
-  constexpr int kPoses = 200;         // from which the size of the robot follows
+  // Number of poses from which the size of the robot is computed.
+  constexpr int kPoses = 200;
   constexpr double kWideSlide = 4.0;  // a longer slide is shown in part [sizes of the robot]
   std::mt19937_64 engine(0);
   Eigen::Vector3d low = Eigen::Vector3d::Constant(1e9), high = -low;

@@ -1,4 +1,4 @@
-// A model at rest: where its joints may be, and the loads on them.
+// Class Mechanism: a model at rest, with the ranges of its joints and the loads on them.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -13,7 +13,8 @@
 
 namespace ddm {
 
-/// For one thread at a time. Positions are those of all joints                              [n x 1]
+/// A model at rest. Use an object in one thread at a time. A position has one number for each joint
+/// [n x 1].
 class Mechanism {
  public:
   /// @throws std::invalid_argument as requirePositionsAndRates()
@@ -21,36 +22,36 @@ class Mechanism {
 
   const std::vector<ModelJoint>& joints() const { return joints_; }
 
-  /// The length that motions of a joint compare with: 1 rad, or half the size of the robot.
+  /// Scale for motions of a joint: 1 rad for a hinge, half the size of the robot [m] for a slide.
   double unit(int joint) const { return joints_[joint].isHinge() ? 1.0 : 0.5 * size_; }
 
-  /// Pose 0 of the file, within the limits.
+  /// Pose qpos0 of the file, moved into the limits.
   Eigen::VectorXd zero() const;
 
-  /// A random pose that the camera should show.
+  /// Draws a random pose from the range that the camera should show.
   Eigen::VectorXd draw(std::mt19937_64* engine) const;
 
-  /// Within the limits, and with the positions of joints that follow others.
+  /// Moves a position into the limits, and sets the joints that follow other joints.
   Eigen::VectorXd coupled(Eigen::VectorXd position) const;
 
   /// The model at rest in this pose.
   const mjData& place(const Eigen::VectorXd& position) const;
 
-  /// Torque that weight and springs ask for at rest: the gradient of energy().
+  /// Torque that balances weight and springs at rest: the gradient of energy()  [n x 1].
   Eigen::VectorXd load(const Eigen::VectorXd& position, bool springs = true) const;
 
-  /// Of weight and springs [J].
+  /// Potential energy of weight and springs [J].
   double energy(const Eigen::VectorXd& position, bool springs = true) const;
 
-  /// Inertia that a motor of this joint feels [kg m^2, kg].
+  /// Inertia that a motor at this joint accelerates [kg m^2 or kg].
   double inertia(int joint, const Eigen::VectorXd& position) const;
 
-  /// Where the mechanism goes by its weight and springs if it is slow.
+  /// Position to which weight and springs move the mechanism slowly.
   Eigen::VectorXd settled(const Eigen::VectorXd& position) const {
     return followed(position, -1.0);
   }
 
-  /// The pose of the most energy that weight gives.
+  /// Position with the largest potential energy of weight.
   Eigen::VectorXd highest(const std::vector<Eigen::VectorXd>& poses) const;
 
  private:

@@ -1,4 +1,4 @@
-// The files that make up a model.
+// Finds and reads the files that belong to a model.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "model_files.h"
 
@@ -23,7 +23,7 @@ bool has(const std::string& text, const std::string& word) {
   return text.find(word) != std::string::npos;
 }
 
-/// Names of the attributes of an element that name files.
+/// Attributes of an element whose values are file names.
 std::vector<std::string> fileAttributes(const XMLElement& element) {
   const std::set<std::string> kinds = {"include", "mesh", "texture", "hfield", "skin"};
   std::vector<std::string> names;
@@ -34,7 +34,8 @@ std::vector<std::string> fileAttributes(const XMLElement& element) {
   return names;
 }
 
-/// Finds files as MuJoCo does: beside the model, or in its folders of meshes and textures.
+/// Finds files in the same folders as MuJoCo: the folder of the model, and its folders of meshes
+/// and textures.
 class Collector {
  public:
   Collector(const fs::path& folder, const FindPackage& find_package)
@@ -43,16 +44,15 @@ class Collector {
   void add(const fs::path& file) {
     if (!seen_.insert(file.lexically_normal().string()).second) return;
     const std::string bytes = readModelFile(file.string());
-    boost::crc_32_type checksum;
-    checksum.process_bytes(bytes.data(), bytes.size());
-    checksum_ += checksum.checksum();
+    checksum_.process_bytes(bytes.data(), bytes.size());
     const std::string mistaken = mistakenFor(bytes);
     if (!mistaken.empty()) refuse(file.string(), " ", mistaken);
     const std::size_t begin = bytes.find_first_not_of("\xef\xbb\xbf \t\r\n");
-    if (begin == std::string::npos || bytes[begin] != '<') return;  // neither model nor include
+    // Neither a model nor an included file.
+    if (begin == std::string::npos || bytes[begin] != '<') return;
     const XmlDocument document = parseXml(bytes);
     forEachElement(document->RootElement(), [this](XMLElement* element) { addNames(*element); });
-    const std::set<std::string> names = names_;  // adding a file adds its names
+    const std::set<std::string> names = names_;  // a copy, because add() changes names_
     for (const std::string& name : names) {
       for (const fs::path& path : pathsOf(name)) add(path);
     }
@@ -63,8 +63,8 @@ class Collector {
     for (const std::string& name : names_) {
       if (pathsOf(name).empty()) missing.push_back(name);
     }
-    char digest[32];  // with letters in front, so that no reader takes it for a number
-    std::snprintf(digest, sizeof(digest), "crc32-%08x", checksum_);
+    char digest[32];  // the prefix keeps CSV and YAML readers from taking the digest for a number
+    std::snprintf(digest, sizeof(digest), "crc32-%08x", checksum_.checksum());
     return {digest, boost::algorithm::join(missing, ", ")};
   }
 
@@ -74,7 +74,7 @@ class Collector {
       const std::string name = attribute(element, key.c_str());
       try {
         names_.insert(resolved(name, find_package_));
-      } catch (const std::invalid_argument&) {  // refused when MuJoCo is to read it
+      } catch (const std::invalid_argument&) {  // MuJoCo's own reader reports this name later
         names_.insert(name);
       }
     }
@@ -94,13 +94,13 @@ class Collector {
 
   fs::path folder_;
   const FindPackage& find_package_;
-  std::set<fs::path> folders_;   // of the model, its meshes and textures
-  std::set<std::string> names_;  // of files, as the texts have them
+  std::set<fs::path> folders_;   // folders of the model, of its meshes and of its textures
+  std::set<std::string> names_;  // names of files, as they stand in the models' texts
   std::set<std::string> seen_;
-  std::uint32_t checksum_ = 0;  // a sum, which does not depend on the order of the files
+  boost::crc_32_type checksum_;
 };
 
-/// What stands between the first two quotation marks behind a word; empty if the word is not there.
+/// Text between the first two quotation marks after a word. Empty if the word does not occur.
 std::string quotedAfter(const std::string& text, const std::string& word) {
   const std::size_t begin = text.find('\'', std::min(text.find(word), text.size()));
   if (begin == std::string::npos) return "";
@@ -125,15 +125,16 @@ ModelText readMjcf(const std::string& text, const std::string& path,
       const std::string name = attribute(*element, key.c_str());
       if (!has(name, "://")) continue;
       fs::path file = resolved(name, find_package);
-      // MuJoCo counts includes from the folder of the model, even if they are absolute.
+      // MuJoCo takes the path of an include relative to the folder of the model, even if the path
+      // is absolute.
       if (std::string(element->Value()) == "include") {
         file = fs::relative(file, fs::absolute(path).parent_path());
       }
       element->SetAttribute(key.c_str(), file.c_str());
     }
   });
-  // As newer versions of MuJoCo do: without it, version 2.2.2 refuses a range that has no
-  // `limited`.
+  // Newer versions of MuJoCo set `autolimits` by default. Without it, version 2.2.2 refuses a range
+  // without the attribute `limited`.
   XMLElement* const compiler = document->NewElement("compiler");
   compiler->SetAttribute("autolimits", "true");
   root->InsertFirstChild(compiler);

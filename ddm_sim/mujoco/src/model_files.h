@@ -1,4 +1,4 @@
-// The files that make up a model.
+// Finds and reads the files that belong to a model.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -10,24 +10,24 @@
 namespace ddm {
 
 struct ModelFiles {
-  std::string digest;   ///< checksum over all of them: "crc32-" and eight hexadecimal digits
-  std::string missing;  ///< names of those that are not there, with commas between them
+  std::string digest;   ///< checksum over all files: "crc32-" and eight hexadecimal digits
+  std::string missing;  ///< names of the files that do not exist, separated by commas
 };
 
-/// A model file and all files that it names: includes, meshes, textures.
-/// @throws std::exception with the path if one of them cannot be read or is not what it should be
+/// Reads a model file and all files that it names: includes, meshes, textures.
+/// @throws std::exception with the path if a file cannot be read or has the wrong content
 ModelFiles filesOf(const ModelText& model, const FindPackage& find_package);
 
-/// MJCF as MuJoCo is given it.
+/// Reads MJCF and makes the text that MuJoCo gets.
 /// @throws std::invalid_argument as resolved()
 ModelText readMjcf(const std::string& text, const std::string& path,
                    const FindPackage& find_package);
 
-/// The path of package://PACKAGE/PATH and file://PATH; others as they are.
-/// @throws std::invalid_argument with the name and what helps, if the package cannot be found
+/// Path of package://PACKAGE/PATH or file://PATH. Returns other names unchanged.
+/// @throws std::invalid_argument with the name and the remedy if the package cannot be found
 std::string resolved(const std::string& name, const FindPackage& find_package);
 
-/// What helps if MuJoCo has refused a model with this error; empty if no remedy is known.
+/// Remedy for an error with which MuJoCo has refused a model. Empty if no remedy is known.
 std::string hintFor(const std::string& error);
 
 }  // namespace ddm

@@ -1,4 +1,4 @@
-// The motors of a model: which joints, how strong.
+// Finds the motors of a model, their joints and their limits.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "motors.h"
 
@@ -17,20 +17,20 @@ namespace {
 
 using Texts = std::vector<std::string>;
 
-/// Torques of an actuator at its joint [N m or N]; infinite where the file has no limit.
+/// Range of an actuator's torque at its joint [N m or N]. Infinite if the file has no limit.
 struct Range {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
 
-  /// What a motor can do in both directions; none if it has no limit.
+  /// Largest torque that the motor reaches in both directions. Empty if the torque has no limit.
   std::optional<double> limit() const {
     const double limit = std::min(-low, high);
     return limit > 0.0 && std::isfinite(limit) ? std::make_optional(limit) : std::nullopt;
   }
 };
 
-/// Torque at the joint for a control of 1 of actuator `i`; 0 if its torque is not just a multiple of
-/// its control.
+/// Torque at the joint for a control of 1 of actuator `i`. The result is 0 if the torque is not
+/// proportional to the control.
 double strengthOf(const mjModel& m, int i) {
   const bool plain = m.actuator_trntype[i] == mjTRN_JOINT && m.actuator_dyntype[i] == mjDYN_NONE &&
                      m.actuator_gaintype[i] == mjGAIN_FIXED &&
@@ -50,7 +50,8 @@ Range rangeOf(const mjModel& m, int i) {
   return range;
 }
 
-/// What all actuators of the file together can do at a joint; none if one of them has no limit.
+/// Largest torque that all actuators of the file together reach at a joint. Empty if one of them
+/// has no limit.
 std::optional<double> limitOfActuators(const mjModel& m, int joint) {
   Range sum = {0.0, 0.0};
   for (int i = 0; i < m.nu; ++i) {
@@ -61,7 +62,8 @@ std::optional<double> limitOfActuators(const mjModel& m, int joint) {
   return sum.limit();
 }
 
-/// Actuator `i` of the file, if its torque is nothing but a multiple of its control.
+/// Actuator `i` of the file.
+/// @throws std::invalid_argument if its torque is not proportional to its control
 Motor actuator(const MujocoModel& model, int i) {
   const mjModel& m = model.get();
   const std::string name = "actuator " + model.name(mjOBJ_ACTUATOR, i) + " of " + model.uri();
@@ -128,7 +130,7 @@ std::vector<double> limitsOf(const MujocoModel& model, const MujocoOptions& opti
   std::vector<double> limits;
   for (std::size_t i = 0; i < motors.size(); ++i) {
     const std::string joint = model.name(mjOBJ_JOINT, motors[i].joint);
-    // Files that were made by a drawing program often say effort 0 for what is not known.
+    // Many files from CAD exporters have effort 0 as a placeholder for an unknown limit.
     const double allowed = motors[i].limit.value_or(0.0);
     if (given.empty() && allowed == 0.0) {
       refuse(
@@ -148,11 +150,13 @@ std::vector<double> limitsOf(const MujocoModel& model, const MujocoOptions& opti
 }
 
 MotorChoice chosenMotors(const MujocoModel& model, const std::vector<ModelJoint>& joints) {
-  constexpr std::size_t kMaxMotors = 2;  // without being asked for more
+  // Largest number of motors that are chosen without the option --motors.
+  constexpr std::size_t kMaxMotors = 2;
   const mjModel& m = model.get();
   Texts candidates, with_effort, actuated;
   for (const ModelJoint& joint : joints) {
-    if (model.urdf().leaders.count(joint.name) > 0) continue;  // has no motor of its own
+    // A joint that mimics another one has no motor.
+    if (model.urdf().leaders.count(joint.name) > 0) continue;
     candidates.push_back(joint.name);
     if (joint.effort > 0.0) with_effort.push_back(joint.name);
   }

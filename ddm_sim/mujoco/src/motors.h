@@ -1,4 +1,4 @@
-// The motors of a model: which joints, how strong.
+// Motors of a model: their joints and their limits.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -13,28 +13,32 @@
 namespace ddm {
 
 struct Motor {
-  int joint = 0;  ///< that it turns or shifts
-  std::optional<double>
-      limit;  ///< of its torque by the file [N m or N]; none: the file does not say
+  int joint = 0;  ///< index of the joint that the motor moves
+  /// Limit of the motor's torque or force in the file [N m or N]. Empty if the file has no limit.
+  std::optional<double> limit;
 };
 
-/// Those of `motors`, or the actuators of the file in its order.
-/// @throws std::invalid_argument naming what is not a motor of a hinge or slide, or what is missing
+/// Motors of the option `motors`, or the actuators of the file in their order.
+/// @throws std::invalid_argument naming a motor that does not move a hinge or slide, or the missing
+///         motors
 std::vector<Motor> motorsOf(const MujocoModel& model, const MujocoOptions& options);
 
-/// The bound of each motor: `max_torque`, or the limits of the file.
-/// @throws std::invalid_argument naming a joint that has none, or whose motor is weaker
+/// Bound of each motor [N m or N]: the option `max_torque`, or the limits of the file.
+/// @throws std::invalid_argument naming a joint that has no limit, or a motor whose limit in the
+///         file is below `max_torque`
 std::vector<double> limitsOf(const MujocoModel& model, const MujocoOptions& options);
 
 struct MotorChoice {
   std::vector<std::string> joints;
   std::string why;
-  bool by_actuators = false;  ///< the file's own motors: `plant/motors` stays empty
+  /// True: the actuators of the file, so that `plant/motors` stays empty.
+  bool by_actuators = false;
 };
 
-/// Which one or two joints have a motor: those of the file's actuators, of its transmissions, those
-/// with an effort limit, or the only joint.
-/// @throws std::invalid_argument with the joints that could have one if the file does not say
+/// Chooses one or two joints that have a motor: the joints of the file's actuators, else those of
+/// its transmissions, else those with an effort limit, else the only joint.
+/// @throws std::invalid_argument with the joints that could have a motor if the file does not say
+///         which one has
 MotorChoice chosenMotors(const MujocoModel& model, const std::vector<ModelJoint>& joints);
 
 }  // namespace ddm

@@ -1,4 +1,4 @@
-// A model file, MJCF or URDF, as MuJoCo understands it.
+// Implements MujocoModel: a model file (MJCF or URDF) that MuJoCo has compiled.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_mujoco/mujoco_model.h"
 
@@ -24,7 +24,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// @throws std::invalid_argument if there is no such file, naming those in its folder
+/// Path of an existing regular file.
+/// @throws std::invalid_argument if the file does not exist, with the names of the model files in
+///         its folder
 std::string pathOf(const std::string& uri, const FindPackage& find_package) {
   const std::string path = resolved(uri, find_package);
   std::error_code none;
@@ -46,10 +48,10 @@ std::string pathOf(const std::string& uri, const FindPackage& find_package) {
   refuse("there is no file ", path, ": ", suggestion(fs::path(path).filename().string(), there));
 }
 
-/// Does not draw the collision shapes (group 0) of links that have visual ones (group 1): they lie
-/// on these and would hide them.
+/// Stops drawing the collision shapes (group 0) of links that also have visual shapes (group 1),
+/// because collision shapes would hide the visual ones.
 void hideCollisionShapes(mjModel* model) {
-  constexpr int kNotDrawn = 3;  // groups 0, 1 and 2 are drawn
+  constexpr int kNotDrawn = 3;  // Renderer draws the groups 0, 1 and 2
   std::set<int> seen;           // links with visual shapes
   for (int i = 0; i < model->ngeom; ++i) {
     if (model->geom_group[i] == 1) seen.insert(model->geom_bodyid[i]);
@@ -76,7 +78,8 @@ void light(mjModel* model) {
   std::fill_n(model->vis.headlight.specular, 3, 0.1F);
 }
 
-/// A model with equality constraints in arrays of its own; everything else is that of `base`.
+/// A copy of `base` with its own arrays for equality constraints. All other arrays are those of
+/// `base`.
 struct CoupledModel {
   std::shared_ptr<const mjModel> base;
   mjModel model;
@@ -105,7 +108,7 @@ std::shared_ptr<const mjModel> coupled(std::shared_ptr<const mjModel> base,
     own->data[i * mjNEQDATA] = couplings[i].offset;
     own->data[i * mjNEQDATA + 1] = couplings[i].multiplier;
   }
-  m.neq = static_cast<int>(n);  // a URDF has no others
+  m.neq = static_cast<int>(n);  // a URDF has no other constraints
   m.nemax += m.neq;
   m.njmax += m.neq;
   m.nstack += 10 * (m.njmax + m.nv) * m.neq;
@@ -120,8 +123,8 @@ std::shared_ptr<const mjModel> coupled(std::shared_ptr<const mjModel> base,
   return {own, &m};
 }
 
-/// Adds what a URDF cannot say. Neighbouring links overlap in most of them, and all are in the
-/// dark.
+/// Adds settings that a URDF has no words for. Contacts are disabled, because neighbouring links
+/// overlap in most URDF files. A light is added, because URDF has no lights.
 std::shared_ptr<const mjModel> completedUrdf(ModelPointer model, const Urdf& urdf) {
   if (!urdf.contacts) model->opt.disableflags |= mjDSBL_CONTACT;
   hideCollisionShapes(model.get());
@@ -129,7 +132,7 @@ std::shared_ptr<const mjModel> completedUrdf(ModelPointer model, const Urdf& urd
   return coupled(std::move(model), urdf.couplings);
 }
 
-/// What helps if the outermost element of a file is not that of a model.
+/// Remedy if the root element of a file is not that of a model.
 std::string hintForRoot(const std::string& root) {
   if (root == "sdf") return ": take the URDF or xacro that it was made from, or convert it to URDF";
   if (root == "collada") return ": this is a mesh; name the URDF or MJCF file that uses it";
@@ -137,7 +140,7 @@ std::string hintForRoot(const std::string& root) {
   return ": this is a part of a model; name the MJCF file that includes it";
 }
 
-/// In one line, with the files of meshes in the place of the names that MuJoCo was given.
+/// Error message in one line. The paths of mesh files replace the names that MuJoCo got.
 std::string readable(std::string error, const ModelText& text) {
   for (const auto& mesh : text.meshes) {
     const fs::path beside = fs::absolute(text.path).parent_path() / mesh.first;
@@ -169,7 +172,7 @@ MujocoModel::MujocoModel(const std::string& uri, const FindPackage& find_package
       given = urdf.model;
       urdf_ = urdf.facts;
       files = filesOf(given, find_package);
-      files.missing.clear();  // readUrdf() has checked the meshes; all other names are ignored
+      files.missing.clear();  // readUrdf() has checked the meshes; MuJoCo ignores all other names
       model_ = completedUrdf(loadModel(given), urdf);
     } else if (root == "mujoco") {
       given = readMjcf(text, path, find_package);
@@ -197,7 +200,7 @@ MujocoModel::MujocoModel(const std::string& uri, const FindPackage& find_package
 int MujocoModel::id(mjtObj type, const std::string& name, const std::string& key) const {
   const int id = mj_name2id(model_.get(), type, name.c_str());
   if (id >= 0) return id;
-  const std::vector<std::string> all = names(type);  // with those that name() gives
+  const std::vector<std::string> all = names(type);  // includes the names that name() makes up
   const auto found = std::find(all.begin(), all.end(), name);
   if (found != all.end()) return static_cast<int>(found - all.begin());
   refuse(key, " must name a ", mju_type2Str(type), " of ", uri_, ", got ", name, ": ",

@@ -1,4 +1,4 @@
-// A plant that a model file describes: what values are valid, whatever the file.
+// Checks the options of a plant with a MuJoCo model, independently of the model file.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_mujoco/mujoco_options.h"
 
@@ -12,7 +12,8 @@ namespace ddm {
 namespace {
 
 void checkLook(const RenderOptions& look, int picture_size, OptionChecks* plant) {
-  constexpr int kMaxSize = 4096;  // of what is drawn: 1 GB of memory with samples [pixels]
+  // Side of the drawn image, which needs 1 GB of memory with samples [pixels]
+  constexpr int kMaxSize = 4096;
   const auto requirePoint = [plant](const std::string& key, const std::vector<double>& point) {
     const bool finite =
         std::all_of(point.begin(), point.end(), [](double x) { return std::isfinite(x); });

@@ -1,4 +1,4 @@
-// Moves a model: states in, states out.
+// Implements MujocoPhysics: simulates a model from one state to the next.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mujoco_physics.h"
 
@@ -19,7 +19,7 @@ namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Where the options name motors, MuJoCo computes no actuator of the file, of whatever kind.
+/// A copy of the model. If the options name motors, all actuators of the file are disabled.
 mjModel physicsOf(const MujocoModel& model, const MujocoOptions& options) {
   mjModel physics = model.get();
   physics.opt.timestep = timestepOf(model, options);
@@ -49,7 +49,7 @@ void requirePositionsAndRates(const MujocoModel& model) {
 }
 
 double timestepOf(const MujocoModel& model, const MujocoOptions& options) {
-  constexpr double kSmallest = 2e-5;  // a second takes longer than a second then [s]
+  constexpr double kSmallest = 2e-5;  // below this step the simulation is slower than real time [s]
   if (options.timestep > 0.0) return options.timestep;
   const double timestep = model.get().opt.timestep;
   if (timestep >= kSmallest) return timestep;
@@ -64,7 +64,8 @@ MujocoPhysics::MujocoPhysics(std::shared_ptr<const MujocoModel> model, const Muj
       motors_(motorsOf(*model_, options)),
       data_(makeData(physics_)) {}
 
-/// Everything that the next frame depends on. Setting these costs a hundredth of mj_resetData().
+/// Sets all variables that the next physics step depends on. This takes a hundredth of the time of
+/// mj_resetData().
 void MujocoPhysics::set(const Eigen::VectorXd& state) const {
   const int n = numJoints();
   mjData* const data = data_.get();
@@ -79,7 +80,7 @@ void MujocoPhysics::set(const Eigen::VectorXd& state) const {
     std::copy_n(physics_.body_pos + 3 * i, 3, data->mocap_pos + 3 * physics_.body_mocapid[i]);
   }
   data->time = 0.0;
-  data->pstack = 0;  // an error may have left it in use
+  data->pstack = 0;  // an earlier error may have left the stack in use
   for (mjWarningStat& warning : data->warning) warning.number = 0;
 }
 
@@ -106,7 +107,7 @@ Eigen::MatrixXd MujocoPhysics::frames(const Eigen::VectorXd& state, const Eigen:
   }
   for (int frame = 0; frame < num_frames; ++frame) {
     mj_step(&physics_, data_.get());
-    requireStable(frame, state);  // MuJoCo has begun anew at its first pose if it is not
+    requireStable(frame, state);  // MuJoCo resets an unstable simulation to its first pose
     std::copy_n(data_->qpos, n, states.col(frame).data());
     std::copy_n(data_->qvel, n, states.col(frame).data() + n);
   }
@@ -143,7 +144,7 @@ Eigen::VectorXd MujocoPhysics::bodies(const Eigen::VectorXd& state) const {
   const mjData& data = placed(state);
   std::vector<double> out;
   for (int i = 1; i < m.nbody; ++i) {
-    if (m.body_dofnum[m.body_weldid[i]] == 0) continue;  // stands still
+    if (m.body_dofnum[m.body_weldid[i]] == 0) continue;  // the body does not move
     out.insert(out.end(), data.xipos + 3 * i, data.xipos + 3 * i + 3);
   }
   return Eigen::Map<const Eigen::VectorXd>(out.data(), static_cast<Eigen::Index>(out.size()));
@@ -158,13 +159,18 @@ bool MujocoPhysics::withinRanges(const Eigen::VectorXd& state) const {
   return true;
 }
 
-/// Gauss-Newton, with steps of at most 1 rad or m.
-/// @param state  in: where to begin; out: solution
+/// Moves a place to a point of the x-y plane by Gauss-Newton steps of at most 1 rad or m. With J
+/// the Jacobian of the place and d the distance to the point:
+///
+///   q <- q + J^T (J J^T + kDamping I)^-1 d
+///
+/// @param state  in: initial state; out: solution
+/// @return false if the iterations do not converge, or if a joint leaves its range
 bool MujocoPhysics::approach(const Place& place, const Eigen::Vector2d& point,
                              Eigen::VectorXd* state) const {
   constexpr int kIterations = 100;
   constexpr double kReached = 1e-14;
-  constexpr double kDamping = 1e-12;  // far below a link's length squared
+  constexpr double kDamping = 1e-12;  // far below the square of a link's length [m^2]
   const mjModel& m = physics_;
   const int n = m.nv;
   RowMajor jacobian(3, n);
@@ -190,7 +196,7 @@ Eigen::VectorXd MujocoPhysics::reach(const Place& place, const Eigen::Vector2d& 
                                      const Eigen::VectorXd& guess) const {
   constexpr int kTries = 100;
   const mjModel& m = physics_;
-  std::mt19937_64 engine(0);  // the pose depends on the point alone
+  std::mt19937_64 engine(0);  // fixed seed: the pose depends only on the point
   for (int i = 0; i < kTries; ++i) {
     Eigen::VectorXd state = guess;
     state.tail(m.nv).setZero();

@@ -1,4 +1,4 @@
-// Moves a model: states in, states out.
+// Class MujocoPhysics: simulates a model from one state to the next.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -13,18 +13,18 @@
 
 namespace ddm {
 
-/// @throws std::invalid_argument naming a joint that is neither hinge nor slide, or if there is no
-///         joint
+/// @throws std::invalid_argument naming a joint that is neither a hinge nor a slide, or if the
+///         model has no joint
 void requirePositionsAndRates(const MujocoModel& model);
 
-/// Time of a physics frame: that of the options, else of the file [s].
+/// Duration of a physics step [s]: the option `timestep`, or the time step of the file.
 double timestepOf(const MujocoModel& model, const MujocoOptions& options);
 
-/// A model with a workspace of its own; for one thread at a time. What it returns depends on its
-/// arguments alone.
+/// A model with its own memory for the simulation. Use an object in one thread at a time. The
+/// result of each function depends only on its arguments.
 ///
-/// If the options name motors, all actuators of the file are switched off, and only the torques of
-/// these motors act.
+/// If the options name motors, MuJoCo disables all actuators of the file, and only the torques of
+/// the named motors act.
 class MujocoPhysics {
  public:
   /// @throws std::invalid_argument as motorsOf()
@@ -32,27 +32,28 @@ class MujocoPhysics {
 
   int numJoints() const { return physics_.njnt; }
 
-  /// The states after each of `num_frames` frames under a constant torque.
-  /// @param torque  of each motor                                                      [m x 1]
+  /// States after each of `num_frames` physics steps under a constant torque.
+  /// @param torque  torque of each motor                                                [m x 1]
   /// @return        one state per column                                     [2 nq x num_frames]
   /// @throws std::range_error with MuJoCo's reason if the simulation is unstable
   Eigen::MatrixXd frames(const Eigen::VectorXd& state, const Eigen::VectorXd& torque,
                          int num_frames) const;
 
-  /// The model in this state, as far as positions go: bodies, sites, cameras and lights.
-  /// @param target  (optional) where to put the mocap body `target`, if the model has one [m].
-  ///                Without it, this body is where the file puts it.
+  /// Computes positions for this state: bodies, sites, cameras and lights.
+  /// @param target  (optional) position of the mocap body `target` [m], used if the model has one.
+  ///         Without this argument the body stays where the file puts it.
   const mjData& placed(const Eigen::VectorXd& state,
                        const std::optional<Eigen::Vector2d>& target = std::nullopt) const;
 
-  /// Where these are in the world [m].                                              [3 n x 1]
+  /// Positions of these places in the world [m].                                          [3 n x 1]
   Eigen::VectorXd places(const std::vector<Place>& places, const Eigen::VectorXd& state) const;
 
   /// Centres of mass of all bodies that a joint can move [m].                       [3 n x 1]
   Eigen::VectorXd bodies(const Eigen::VectorXd& state) const;
 
-  /// A state at rest that brings a place to this point of the x-y plane; near `guess` if it can be.
-  /// @throws std::invalid_argument if there is none within the ranges of the joints
+  /// State at rest that brings a place to this point of the x-y plane. The state is near `guess` if
+  /// possible.
+  /// @throws std::invalid_argument if no state within the ranges of the joints reaches the point
   Eigen::VectorXd reach(const Place& place, const Eigen::Vector2d& point,
                         const Eigen::VectorXd& guess) const;
 
@@ -64,7 +65,7 @@ class MujocoPhysics {
   bool withinRanges(const Eigen::VectorXd& state) const;
 
   std::shared_ptr<const MujocoModel> model_;
-  mjModel physics_;  // shares all arrays with model_
+  mjModel physics_;  // uses the arrays of model_
   std::vector<Motor> motors_;
   DataPointer data_;
 };

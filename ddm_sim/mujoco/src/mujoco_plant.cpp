@@ -1,4 +1,4 @@
-// A plant that a model file describes, moved by MuJoCo.
+// Implements MujocoPlant: a plant that a model file describes and that MuJoCo simulates.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_mujoco/mujoco_plant.h"
 
@@ -20,8 +20,9 @@ bool isHinge(const MujocoModel& model, int joint) {
   return model.get().jnt_type[joint] == mjJNT_HINGE;
 }
 
-/// A state from numbers that may leave out the rates, which are 0 then.
-/// @param numbers  none: all 0
+/// Makes a state from a list of numbers. If the list has no rates, the rates are 0.
+/// @param numbers  one number per joint, or per joint and rate; empty: all 0
+/// @throws std::invalid_argument for any other number of elements
 Eigen::VectorXd stateOf(const std::vector<double>& numbers, int num_joints, const char* key) {
   Eigen::VectorXd state = Eigen::VectorXd::Zero(2 * num_joints);
   const auto count = static_cast<Eigen::Index>(numbers.size());
@@ -33,9 +34,10 @@ Eigen::VectorXd stateOf(const std::vector<double>& numbers, int num_joints, cons
   return state;
 }
 
-/// Frames of the physics in one time step.
+/// Number of physics steps in one time step.
+/// @throws std::invalid_argument if plant/dt is not a multiple of the physics time step
 int framesOf(const MujocoModel& model, const MujocoOptions& options) {
-  constexpr double kMaxFrames = 1e6;  // a step takes about a second then
+  constexpr double kMaxFrames = 1e6;  // a time step then takes about a second to compute
   const double dt = options.dt;
   const double step = timestepOf(model, options);
   const double frames = std::max(1.0, std::round(dt / step));
@@ -49,7 +51,8 @@ int framesOf(const MujocoModel& model, const MujocoOptions& options) {
          ": the nearest is ", frames * step);
 }
 
-/// Name of a joint that heads columns of CSV files.
+/// Name of a joint, for the columns of CSV files.
+/// @throws std::invalid_argument if the name cannot head a column
 std::string columnOf(const MujocoModel& model, int joint) {
   const std::string name = model.name(mjOBJ_JOINT, joint);
   if (usableName(name)) return name;
@@ -80,7 +83,7 @@ std::vector<std::string> torqueNames(const MujocoModel& model, const MujocoOptio
   return names;
 }
 
-/// The joints whose error counts; none where that of sites does.
+/// Joints whose error is measured. Empty if the options measure the error of sites.
 std::vector<int> errorJoints(const MujocoModel& model, const MujocoOptions& options) {
   std::vector<int> joints;
   if (!options.error_sites.empty()) return joints;
@@ -103,7 +106,7 @@ int evaluationSteps(const MujocoOptions& options, int frames) {
   return options.episode_frames / frames;
 }
 
-/// @pre the options have no problems of their own
+/// @pre options.problems() is empty
 PlantInfo infoOf(const MujocoModel& model, const MujocoOptions& options) {
   const mjModel& m = model.get();
   const int n = m.njnt;
@@ -137,7 +140,7 @@ PlantInfo infoOf(const MujocoModel& model, const MujocoOptions& options) {
   return info;
 }
 
-/// Places in the model; an empty name is none.
+/// Places with these names in the model. Skips empty names.
 std::vector<Place> places(const MujocoModel& model, const std::vector<std::string>& names,
                           const std::string& key) {
   std::vector<Place> out;
@@ -153,7 +156,7 @@ RenderOptions imageLook(const MujocoOptions& options) {
   return look;
 }
 
-/// The same scene as the learner's, through the same camera.
+/// Options of the large image for people: the same scene and camera as the learner's image.
 RenderOptions viewLook(const MujocoOptions& options) {
   RenderOptions look = options.look;
   look.width = 640;

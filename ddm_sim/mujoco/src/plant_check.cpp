@@ -1,4 +1,4 @@
-// Whether a plant moves as it should, and whether its images show the motion.
+// Checks that a plant moves, and that its images show the motion.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::VectorXd;
 
-/// The number of pixels that differ by at least this many grey levels.
+/// Number of pixels that differ by at least `levels` grey levels.
 int numDifferent(const Picture& a, const Picture& b, int levels) {
   int count = 0;
   for (std::size_t i = 0; i < a.bytes.size(); ++i) {
@@ -32,7 +32,7 @@ std::string point(const Eigen::Vector3d& at) {
   return text.str();
 }
 
-/// The likely cause of images that do not change.
+/// Likely cause of images that do not change.
 std::string whyUnseen(const mjModel& model, const Picture& picture) {
   int moving = 0, drawn = 0;
   for (int i = 0; i < model.ngeom; ++i) {
@@ -60,7 +60,7 @@ std::string whyUnseen(const mjModel& model, const Picture& picture) {
 
 void requireVisible(const std::shared_ptr<const MujocoModel>& model, const MujocoOptions& options) {
   constexpr int kPoses = 8;
-  constexpr int kDiffers = 4;  // more than rounding, and shadows of nothing
+  constexpr int kDiffers = 4;  // above rounding errors and faint shadows [grey levels]
   const mjModel& m = model->get();
   const MujocoPlant plant(model, options);
   const Eigen::VectorXd& start = plant.info().start;
@@ -80,11 +80,11 @@ void requireVisible(const std::shared_ptr<const MujocoModel>& model, const Mujoc
       if (numDifferent(first, plant.render(state), kDiffers) > 0) return;
     }
   } catch (const std::runtime_error&) {
-    return;  // OpenGL fails: the first image that is needed says why
+    return;  // OpenGL fails; the first image that is needed reports the reason
   }
   const CameraModel camera = *plant.cameraModel();
   const Eigen::Vector3d center(m.stat.center);
-  const double depth = m.vis.map.zfar * m.stat.extent;  // nothing farther is drawn
+  const double depth = m.vis.map.zfar * m.stat.extent;  // largest distance that MuJoCo draws [m]
   refuse("plant/camera must show the motion of ", model->uri(),
          ", but its images are equal in all poses: ", whyUnseen(m, first), ". The camera is at ",
          point(camera.position), ", looks along ", point(camera.rotation.col(2)), " and sees ",
@@ -104,7 +104,7 @@ PlantCheck checkPlant(const PlantProposal& proposal, Plant* plant) {
   const int steps = std::max(1, static_cast<int>(std::round(kSeconds / plant->info().dt)));
   std::mt19937_64 engine(3);
   for (int trial = 0; trial <= kTrials; ++trial) {
-    const bool pushed = trial > 0;  // the first trial is without torque
+    const bool pushed = trial > 0;  // the first trial has zero torque
     double& fastest = pushed ? check.random_speed : check.still_speed;
     plant->setState(pushed ? plant->drawStart(engine) : plant->info().start);
     VectorXd torque = VectorXd::Zero(plant->torqueDim());

@@ -1,4 +1,4 @@
-// A plant for a model file that has none yet: what the file says, and a proposal for the rest.
+// Proposes plant options for a model file that has no plant file yet.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_mujoco/plant_proposal.h"
 
@@ -21,14 +21,17 @@ using boost::algorithm::join;
 using Eigen::VectorXd;
 using Texts = std::vector<std::string>;
 
-constexpr int kNumPoses = 200;        // that the camera has to see
-constexpr double kAcceleration = 10;  // by a proposed torque [rad/s^2], slides [half sizes/s^2]
-constexpr double kTooStrong = 4.0;    // a file's limit beyond so many proposed torques is not used
-constexpr double kStep = 0.8;         // motion between two images that dt aims at [rad]
-constexpr double kFastest = 40.0;  // so that dt is not below the 0.02 s of a usual camera [rad/s]
-constexpr double kSeconds = 2.0;   // of a simulation
-constexpr double kHold = 0.3;      // a random torque is held [s]
-constexpr double kStartStd = 0.1;  // [rad]
+constexpr int kNumPoses = 200;  // poses that the camera has to see
+// Acceleration by a proposed torque [rad/s^2], slides [half sizes/s^2]
+constexpr double kAcceleration = 10;
+constexpr double kTooStrong = 4.0;  // a file's limit above this many proposed torques is not used
+// Largest motion between two images for the choice of dt [rad]
+constexpr double kStep = 0.8;
+// Largest speed, so that dt >= 0.02 s, the period of a usual camera [rad/s]
+constexpr double kFastest = 40.0;
+constexpr double kSeconds = 2.0;   // duration of a simulation [s]
+constexpr double kHold = 0.3;      // time for which a random torque is constant [s]
+constexpr double kStartStd = 0.1;  // standard deviation of the initial state [rad]
 
 std::string shortText(double number, const char* format = "%.3g") {
   char out[32];
@@ -36,14 +39,15 @@ std::string shortText(double number, const char* format = "%.3g") {
   return out;
 }
 
-/// To two digits.
+/// Rounds to two significant digits.
 double rounded(double number) { return std::stod(shortText(number, "%.2g")); }
 
-/// Angles near a multiple of a quarter turn are that multiple; others have three digits after the point.
+/// Rounds angles near a multiple of pi/2 to that multiple, and all other positions to three
+/// decimals.
 double roundedPosition(double position, bool angle) {
   const double quarters = std::round(position / (0.5 * kPi));
   if (angle && std::abs(position - 0.5 * kPi * quarters) < 3e-3) return 0.5 * kPi * quarters;
-  return std::round(position * 1e3) / 1e3 + 0.0;  // + 0.0: never -0
+  return std::round(position * 1e3) / 1e3 + 0.0;  // + 0.0 turns -0 into 0
 }
 
 VectorXd atRest(const VectorXd& position) {
@@ -56,7 +60,7 @@ std::vector<double> listOf(const VectorXd& values) {
   return std::vector<double>(values.data(), values.data() + values.size());
 }
 
-/// Fills in a proposal, key by key.
+/// Computes the keys of a proposal one after the other.
 class Proposer {
  public:
   Proposer(const std::shared_ptr<const MujocoModel>& model, const Texts& motors)
@@ -66,7 +70,7 @@ class Proposer {
         motors.empty() ? chosenMotors(*model, out_.joints) : MotorChoice{motors, "as given"};
     out_.options.model = model->uri();
     if (!choice.by_actuators) out_.options.motors = choice.joints;
-    out_.options.max_torque = {1.0};  // until it is known
+    out_.options.max_torque = {1.0};  // placeholder until proposeTorque()
     motors_ = motorsOf(*model, out_.options);
     for (const Motor& motor : motors_) {
       ModelJoint& joint = out_.joints[static_cast<std::size_t>(motor.joint)];
@@ -101,14 +105,15 @@ class Proposer {
 
   void proposeStartAndGoal() {
     const VectorXd zero = mechanism_.zero();
-    const VectorXd nudged = mechanism_.coupled(zero.array() + 0.02);  // off an unstable equilibrium
+    // Away from an unstable equilibrium.
+    const VectorXd nudged = mechanism_.coupled(zero.array() + 0.02);
     VectorXd rest = mechanism_.settled(nudged);
     const bool settles = rest != nudged;
     if (!settles) rest = zero;
     VectorXd start = rest, goal = rest;
     if (gravityMatters()) {
       std::vector<VectorXd> candidates = positions_;
-      for (VectorXd& one : candidates) {  // a joint that weight does not move stays where it starts
+      for (VectorXd& one : candidates) {  // a joint without load keeps its rest position
         const VectorXd load = mechanism_.load(one, false);
         for (Eigen::Index i = 0; i < one.size(); ++i) {
           if (std::abs(load[i]) < 1e-9) one[i] = rest[i];
@@ -130,7 +135,8 @@ class Proposer {
         *value = roundedPosition(*value, joint.isHinge());
       }
     }
-    const std::vector<double> of_positions = start_std;  // and the same for the rates
+    // The rates get the same standard deviations.
+    const std::vector<double> of_positions = start_std;
     start_std.insert(start_std.end(), of_positions.begin(), of_positions.end());
     start = mechanism_.coupled(start);
     goal = mechanism_.coupled(goal);
@@ -149,7 +155,7 @@ class Proposer {
     out_.to_set.push_back("goal");
   }
 
-  /// The motors' joints a quarter of their way from here.
+  /// Moves each motor's joint by a quarter of its range from this position.
   VectorXd elsewhere(VectorXd position) const {
     for (const Motor& motor : motors_) {
       const ModelJoint& joint = out_.joints[static_cast<std::size_t>(motor.joint)];
@@ -161,7 +167,7 @@ class Proposer {
     return mechanism_.coupled(position);
   }
 
-  /// What lifts the weight and accelerates the joint.
+  /// Torque that lifts the weight and accelerates the joint [N m or N].
   double neededTorque(const Motor& motor) const {
     const mjModel& m = model_->get();
     double load = 0.0, inertia = 0.0;
@@ -187,7 +193,7 @@ class Proposer {
     for (const Motor& motor : motors_) {
       const double needed = rounded(neededTorque(motor));
       const std::string joint = model_->name(mjOBJ_JOINT, motor.joint);
-      const double allowed = motor.limit.value_or(0.0);  // 0 in many files where it is not known
+      const double allowed = motor.limit.value_or(0.0);  // many files have 0 for an unknown limit
       if (allowed > 0.0 && allowed <= kTooStrong * needed) {
         limits.push_back(allowed);
         reasons.push_back(joint + ": limit of the file");
@@ -203,7 +209,7 @@ class Proposer {
     out_.reasons["max_torque"] = join(reasons, "; ");
   }
 
-  /// Speeds of the fastest joint, in units of the joints, sorted.
+  /// Speed of the fastest joint in each physics step, in units of the joints per second, sorted.
   std::vector<double> speeds() const {
     const MujocoPhysics physics(model_, out_.options);
     const int n = physics.numJoints();
@@ -235,7 +241,7 @@ class Proposer {
     return speeds;
   }
 
-  /// With a smaller time step of the physics where that of the file is unstable.
+  /// Result of speeds(). Reduces the time step of the physics if the simulation is unstable.
   std::vector<double> stableSpeeds() {
     constexpr int kHalvings = 4;
     for (int i = 0; i < kHalvings; ++i) {
@@ -249,7 +255,7 @@ class Proposer {
     return speeds();
   }
 
-  /// @param free_torque  whether the torque may be lowered where it makes the joints too fast
+  /// @param free_torque  true: the torque may be lowered if it makes the joints too fast
   void proposeTimeStep(bool free_torque) {
     double fast = 0.0;
     for (int i = 0; i < 8; ++i) {
@@ -290,8 +296,8 @@ class Proposer {
     out_.to_set.push_back("tolerance");
   }
 
-  /// The poses, start and goal, and each pose with all joints that have limits at the nearer one: no
-  /// pose reaches farther.
+  /// All proposed poses, initial state and goal. In addition, each pose with all limited joints at
+  /// their nearer limit, because no pose within the limits reaches farther.
   std::vector<VectorXd> withLimits() const {
     std::vector<VectorXd> poses = positions_;
     for (VectorXd position : positions_) {

@@ -1,4 +1,4 @@
-// Error messages about model files and plant files, built from texts and numbers.
+// Builds error messages about model files and plant files from texts and numbers.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -8,7 +8,7 @@
 
 namespace ddm {
 
-/// The parts one after the other, numbers as a stream writes them.
+/// Concatenates the parts; numbers are written as a stream writes them.
 template <class... Parts>
 std::string textOf(const Parts&... parts) {
   std::ostringstream text;
@@ -16,7 +16,7 @@ std::string textOf(const Parts&... parts) {
   return text.str();
 }
 
-/// @throws std::invalid_argument with this text, always
+/// @throws std::invalid_argument with the concatenated parts; the function never returns
 template <class... Parts>
 [[noreturn]] void refuse(const Parts&... parts) {
   throw std::invalid_argument(textOf(parts...));

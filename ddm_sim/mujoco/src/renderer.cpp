@@ -1,4 +1,4 @@
-// Draws the scene of a MuJoCo model without a screen.
+// Implements the renderer of MuJoCo models, without a screen.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_mujoco/renderer.h"
 
@@ -23,11 +23,11 @@ namespace ddm {
 namespace {
 
 constexpr double kDegree = kPi / 180.0;
-constexpr int kMaxDecor = 1000;  // drawn things that are not geoms: sites, tendons, joints
+constexpr int kMaxDecor = 1000;  // drawn objects that are not geoms: sites, tendons, joints
 constexpr int kNoCamera = -1;
-constexpr int kNumShown = 3;  // groups of geoms that MuJoCo draws, from 0
+constexpr int kNumShown = 3;  // MuJoCo draws the groups of geoms below this number
 
-/// Whether a geom belongs to a body that a joint can move, and is not transparent.
+/// Whether a geom is opaque enough to be visible and belongs to a body that a joint can move.
 bool couldBeSeen(const mjModel& model, int geom) {
   const float* rgba = model.geom_rgba + 4 * geom;
   const int material = model.geom_matid[geom];
@@ -37,7 +37,7 @@ bool couldBeSeen(const mjModel& model, int geom) {
   return rgba[3] > 0.0F && model.body_weldid[model.geom_bodyid[geom]] != 0;
 }
 
-/// The group of geoms that is drawn although it is hidden by default; -1: none.
+/// Hidden group of geoms that has to be drawn because no other moving geom is visible; -1 if none.
 int groupToShow(const mjModel& model) {
   std::set<int> groups;
   for (int i = 0; i < model.ngeom; ++i) {
@@ -46,7 +46,8 @@ int groupToShow(const mjModel& model) {
   return groups.empty() || *groups.begin() < kNumShown ? -1 : *groups.begin();
 }
 
-/// @return index of the camera, kNoCamera for one that the options place
+/// @return index of the camera in the model, or kNoCamera if the options place a camera
+/// @throws std::invalid_argument if the model has no such camera
 int findCamera(const mjModel& model, const RenderOptions& options) {
   if (!options.position.empty()) return kNoCamera;
   if (options.camera.empty() && model.ncam > 0) return 0;
@@ -65,7 +66,8 @@ int findCamera(const mjModel& model, const RenderOptions& options) {
                               options.camera + "\": " + suggestion(options.camera, names));
 }
 
-/// A camera at `position`. The upper edge of its image is up, or +y if it looks straight down.
+/// A camera at `position`. The upper edge of its image points to +z, or to +y for a camera that
+/// looks straight down.
 mjvCamera placed(const std::vector<double>& position, const std::vector<double>& look_at) {
   mjvCamera camera;
   mjv_defaultCamera(&camera);
@@ -80,7 +82,8 @@ mjvCamera placed(const std::vector<double>& position, const std::vector<double>&
   return camera;
 }
 
-/// Averages the colours of an image that was drawn `factor` times larger and upside down.
+/// Averages the colours of an image that is `factor` times larger and upside down, as OpenGL stores
+/// it.
 Picture averaged(const std::vector<std::uint8_t>& drawn, int width, int height, int factor) {
   Picture picture;
   picture.width = width;
@@ -177,7 +180,7 @@ Renderer::~Renderer() {
       const EglContext::Current current(*context_);
       mjr_freeContext(&gpu_);
     } catch (const std::runtime_error&) {
-      // The context takes with it what remains.
+      // The destructor of the context releases the rest.
     }
   }
   mjv_freeScene(&drawn_);
@@ -220,7 +223,7 @@ CameraModel Renderer::camera(const mjData& data) {
 }
 
 void Renderer::updateScene(const mjData& data) {
-  // mjv_updateScene() only reads data; its signature does not say so.
+  // mjv_updateScene() only reads data, although its parameter is not const.
   mjv_updateScene(&scene_->appearance(), const_cast<mjData*>(&data), &shown_, nullptr, &camera_,
                   mjCAT_ALL, &drawn_);
   scene_->moveCamera(&drawn_.camera[0]);
@@ -247,9 +250,9 @@ void Renderer::openContext() {
   context_ = std::move(context);
 }
 
-/// Textures, meshes, shadow map and image on the graphics side.
+/// Creates the textures, meshes, shadow map and image in the OpenGL context.
 void Renderer::makeGpuContext() {
-  static std::mutex loading;  // MuJoCo keeps what it finds of OpenGL in global variables
+  static std::mutex loading;  // MuJoCo stores the addresses of OpenGL functions in global variables
   const std::lock_guard<std::mutex> lock(loading);
   const mjModel& look = scene_->appearance();
   mjr_defaultContext(&gpu_);

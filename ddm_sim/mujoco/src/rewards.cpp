@@ -1,4 +1,4 @@
-// Rewards of standard tasks, by name.
+// Implements the rewards of the DeepMind Control Suite.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_mujoco/rewards.h"
 
@@ -10,7 +10,7 @@
 namespace ddm {
 namespace {
 
-/// 1 within `bound` of 0, then 0.1^(d^2), d the distance to the bound in units of `margin`.
+/// Equation: r(x) = 0.1^(d^2),   d = max(0, |x| - bound) / margin.
 double tolerance(double x, double bound, double margin) {
   const double d = std::max(0.0, std::abs(x) - bound) / margin;
   return std::pow(0.1, d * d);
@@ -29,21 +29,23 @@ double cartpoleSmooth(const RewardInputs& in) {
   return upright * small_control * slow * centred;
 }
 
-/// Of the reacher, whose links are 0.12 m long [m].
+/// Position of the reacher's finger, whose links are 0.12 m long [m].
 Eigen::Vector2d finger(const Eigen::VectorXd& state) {
   const double first = state[0], second = state[0] + state[1];
   return 0.12 *
          Eigen::Vector2d(std::cos(first) + std::cos(second), std::sin(first) + std::sin(second));
 }
 
-/// The finger has a radius of 0.01 m, the target one of kMillimetres.
+/// 1 if the finger touches the target, else 0. The finger has a radius of 0.01 m, the target one of
+/// kMillimetres [mm].
 template <int kMillimetres>
 double reacher(const RewardInputs& in) {
   const double reached = 1e-3 * kMillimetres + 0.01;
   return (finger(in.state) - finger(in.goal)).norm() <= reached ? 1.0 : 0.0;
 }
 
-/// The tip of the acrobot reaches 2 m above its shoulder; its links have 1 m.
+/// Depends on the distance of the acrobot's tip to the point 2 m above its shoulder. Each link has
+/// a length of 1 m.
 double acrobotSmooth(const RewardInputs& in) {
   const double first = in.state[0], second = in.state[0] + in.state[1];
   const double distance =

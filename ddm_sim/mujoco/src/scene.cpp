@@ -1,4 +1,4 @@
-// The scene that is drawn: a model with disturbances of its colours and camera.
+// Implements the scene that a renderer draws: a model with disturbances of its colours and camera.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene.h"
 
@@ -16,12 +16,12 @@ namespace ddm {
 namespace {
 
 constexpr double kQuarterTurn = 0.5 * kPi;
-constexpr double kNearest = 0.5;  // change of distance at a share of 1
+constexpr double kNearest = 0.5;  // relative change of the camera's distance at a share of 1 [-]
 
-/// Each disturbance has random numbers of its own, so that one does not change another.
+/// Each disturbance has its own random stream, so that one disturbance does not change another.
 enum Part : std::uint32_t { kCameraPart, kColourPart };
 
-/// Uniform in [-share, share].
+/// Random numbers, uniform in [-share, share].
 class Shift {
  public:
   Shift(Part part, double share)
@@ -35,14 +35,14 @@ class Shift {
   std::uniform_real_distribution<double> uniform_;
 };
 
-/// A copy that belongs to `owner`.
+/// Copies an array into `owner` and returns the copy's address.
 template <class Value>
 Value* copied(const Value* values, int count, std::vector<Value>* owner) {
   owner->assign(values, values + count);
   return owner->data();
 }
 
-/// Shifts the three colours, not the opacity, of `count` things.
+/// Adds random numbers to the red, green and blue of `count` objects. Opacity stays unchanged.
 void shiftColours(Shift* shift, int count, float* rgba) {
   for (int i = 0; i < count; ++i) {
     for (int channel = 0; channel < 3; ++channel) {
@@ -81,7 +81,7 @@ void Scene::drawColours(double share) {
   appearance_.mat_rgba = copied(m.mat_rgba, 4 * m.nmat, &mat_rgba_);
   appearance_.tex_rgb = copied(m.tex_rgb, m.ntexdata, &tex_rgb_);
   shiftColours(&shift, m.ngeom, appearance_.geom_rgba);
-  // A geom shows its own colour in the place of its material's if it is not the default one.
+  // A geom whose colour differs from kUnset no longer shows its material. Such geoms keep kUnset.
   for (int i = 0; i < m.ngeom; ++i) {
     const bool unset = std::equal(kUnset.begin(), kUnset.end(), m.geom_rgba + 4 * i);
     if (m.geom_matid[i] >= 0 && unset) {
@@ -104,7 +104,7 @@ void Scene::moveCamera(mjvGLCamera* camera) const {
   Vector position(camera->pos);
   Vector forward(camera->forward);
   Vector up(camera->up);
-  Eigen::Matrix3f axes;  // of the camera in the world: right, up, backwards
+  Eigen::Matrix3f axes;  // axes of the camera in the world: right, up, backwards
   axes << forward.cross(up), up, -forward;
   const Eigen::Vector3f middle =
       Eigen::Map<const Eigen::Vector3d>(model_->stat.center).cast<float>();

@@ -1,4 +1,4 @@
-// The scene that is drawn: a model with disturbances of its colours and camera.
+// Class Scene: a model with disturbances of its colours and camera, for drawing.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -13,17 +13,18 @@
 
 namespace ddm {
 
-/// MuJoCo's sign for a geom that leaves its colour to its material.
+/// Value by which MuJoCo marks a geom that has the colour of its material.
 constexpr std::array<float, 4> kUnset = {0.5F, 0.5F, 0.5F, 1.0F};
 
-/// Physics never sees it: the model that it is made from stays as it is.
+/// A copy of a model's appearance with disturbances. The original model, which the physics uses,
+/// stays unchanged.
 class Scene {
  public:
   Scene(std::shared_ptr<const mjModel> model, const RenderOptions& options);
   Scene(const Scene&) = delete;  // appearance() points into this object
   Scene& operator=(const Scene&) = delete;
 
-  /// The model as it looks, for drawing alone. Belongs to this object.
+  /// The model with changed colours, to be used for drawing only. This object owns it.
   mjModel& appearance() { return appearance_; }
 
   /// Moves the camera of a drawn scene around the point that it looks at.
@@ -34,13 +35,15 @@ class Scene {
   void drawColours(double share);
 
   std::shared_ptr<const mjModel> model_;
-  mjModel appearance_;  ///< shares everything with model_ except for these colours
+  /// Uses the arrays of model_ except for the following colours.
+  mjModel appearance_;
   std::vector<float> geom_rgba_;
   std::vector<float> site_rgba_;
   std::vector<float> mat_rgba_;
   std::vector<mjtByte> tex_rgb_;
-  Eigen::Matrix3f turn_;  ///< of the camera, in its own frame
-  float nearer_ = 1.0F;   ///< its new distance to the point it looks at, in the old one
+  Eigen::Matrix3f turn_;  ///< rotation of the camera, in its own frame
+  /// New distance to the point that the camera looks at, divided by the old one.
+  float nearer_ = 1.0F;
 };
 
 }  // namespace ddm

@@ -1,4 +1,4 @@
-// Checks a URDF file, and changes what MuJoCo would read in another way than the author meant.
+// Checks a URDF file and rewrites the parts that MuJoCo would misread.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "urdf.h"
 
@@ -20,14 +20,14 @@ namespace {
 namespace fs = std::filesystem;
 using boost::algorithm::join;
 
-/// Gives each file of a mesh a name of its own: MuJoCo tells meshes apart by the name without its
-/// folder.
+/// Gives each mesh file a unique name. MuJoCo distinguishes meshes only by the file name without
+/// its folder.
 class MeshNames {
  public:
   MeshNames(const fs::path& folder, const FindPackage& find_package, const XMLElement& compiler)
       : folder_(folder), find_package_(find_package), compiler_(compiler) {}
 
-  /// Renames the file of a <mesh>.
+  /// Replaces the file name in a <mesh> by a unique name.
   void name(XMLElement* mesh) {
     const std::string named = attribute(*mesh, "filename");
     if (named.empty()) refuseElement(*mesh, "must have a filename");
@@ -56,7 +56,7 @@ class MeshNames {
     mesh->SetAttribute("filename", name.c_str());
   }
 
-  /// @throws std::invalid_argument with all files that MuJoCo does not read
+  /// @throws std::invalid_argument with all files in formats that MuJoCo does not read
   void requireReadable() const {
     if (unreadable_.empty()) return;
     const fs::path first(*unreadable_.begin());
@@ -66,11 +66,11 @@ class MeshNames {
            ".stl` (Debian's assimp-utils), and name the new files in the model");
   }
 
-  std::vector<std::pair<std::string, std::string>> files;  ///< by their new names
+  std::vector<std::pair<std::string, std::string>> files;  ///< pairs of new name and file
 
  private:
-  /// A file is searched in the `meshdir` of the <mujoco> block as MuJoCo does, which strips the
-  /// folder by default, then from the folder of the model.
+  /// Searches a file first in the `meshdir` of the <mujoco> block, with the rules of MuJoCo (which
+  /// strips the folder by default), then in the folder of the model.
   fs::path fileOf(const XMLElement& mesh, const std::string& named) const {
     if (compiler_.Attribute("meshdir") != nullptr) {
       const fs::path name = attribute(compiler_, "strippath") == "false"
@@ -93,19 +93,20 @@ class MeshNames {
   std::set<std::string> unreadable_;
 };
 
-/// MuJoCo by default drops visual shapes, takes the mass of a link from its shapes where it has no
-/// <inertial>, and refuses inertias that rounding has made impossible.
+/// Overrides three defaults of MuJoCo: MuJoCo drops visual shapes, computes the mass of a link
+/// without <inertial> from its shapes, and refuses inertias that rounding has made impossible.
 void completeCompiler(XMLElement* compiler) {
   const std::pair<const char*, const char*> ours[] = {
       {"discardvisual", "false"}, {"inertiafromgeom", "false"}, {"balanceinertia", "true"}};
   for (const auto& one : ours) {
     if (compiler->Attribute(one.first) == nullptr) compiler->SetAttribute(one.first, one.second);
   }
-  compiler->SetAttribute("strippath", "false");  // MeshNames has applied both
+  // MeshNames has already applied strippath and meshdir.
+  compiler->SetAttribute("strippath", "false");
   compiler->DeleteAttribute("meshdir");
 }
 
-/// Leaves out what MuJoCo does not read, such as <gazebo>, after its facts have been noted.
+/// Deletes elements that MuJoCo does not read, such as <gazebo>, after their facts are stored.
 void keepWhatMujocoReads(XMLElement* robot, UrdfFacts* facts) {
   for (const XMLElement* transmission : children(*robot, "transmission")) {
     const XMLElement* const joint = transmission->FirstChildElement("joint");
@@ -140,9 +141,9 @@ Coupling couplingOf(const XMLElement& joint, const std::vector<XMLElement*>& joi
   return coupling;
 }
 
-/// Many files of robots have inertias that no body has, but nearly: there the smallest principal
-/// inertia grows until it fits, and rotations about the other two axes keep theirs. MuJoCo would
-/// put the mean of the three into the place of each.
+/// Corrects inertias that are slightly impossible, as many URDF files have them: the smallest
+/// principal inertia is increased until the triangle inequality holds, and the other two stay the
+/// same. MuJoCo's `balanceinertia` would replace all three by their mean.
 void makePossible(XMLElement* link) {
   XMLElement* const inertial = link->FirstChildElement("inertial");
   XMLElement* const element =
@@ -158,7 +159,7 @@ void makePossible(XMLElement* link) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(inertia);
   Eigen::Vector3d principal = solver.eigenvalues();
   constexpr double kNearly = 2.0;
-  constexpr double kSmallest = 1e-3;  // share of the largest
+  constexpr double kSmallest = 1e-3;  // smallest principal inertia, as a share of the largest
   if (principal[0] < -kSmallest * principal[2] ||
       principal[2] > kNearly * (principal[0] + principal[1])) {
     refuseElement(
@@ -170,14 +171,14 @@ void makePossible(XMLElement* link) {
   }
   const double least = std::max(principal[2] - principal[1], kSmallest * principal[2]);
   if (principal[0] >= least) return;
-  principal[0] = least + 1e-6 * principal[2];  // more than rounding takes away
+  principal[0] = least + 1e-6 * principal[2];  // the margin covers later rounding
   inertia = solver.eigenvectors() * principal.asDiagonal() * solver.eigenvectors().transpose();
   for (int i = 0; i < 3; ++i) {
     for (int j = i; j < 3; ++j) element->SetAttribute(kNames[i][j], inertia(i, j));
   }
 }
 
-/// Notes what a joint says beyond MuJoCo's model.
+/// Stores the facts of a joint that MuJoCo's model does not contain.
 void readJoint(const XMLElement& joint, const std::vector<XMLElement*>& joints, Urdf* urdf) {
   const std::string name = attribute(joint, "name");
   if (attribute(joint, "type") == "fixed") {
@@ -193,7 +194,7 @@ void readJoint(const XMLElement& joint, const std::vector<XMLElement*>& joints, 
   urdf->facts.leaders[name] = urdf->couplings.back().leader;
 }
 
-/// Checks masses and inertias, unless the <mujoco> block lets MuJoCo replace them.
+/// Checks masses and inertias, unless a setting in the <mujoco> block lets MuJoCo replace them.
 void completeInertias(const std::vector<XMLElement*>& links, const std::vector<XMLElement*>& joints,
                       const std::map<std::string, std::string>& fixed, const XMLElement& compiler) {
   if (compiler.Attribute("boundinertia") != nullptr ||
@@ -232,8 +233,8 @@ Urdf readUrdf(const std::string& text, const std::string& path, const FindPackag
   for (const XMLElement* joint : joints) {
     readJoint(*joint, joints, &urdf);
     if (attribute(*joint, "type") != "continuous") continue;
-    for (XMLElement* limit :
-         children(*joint, "limit")) {  // it turns without end, whatever they say
+    // A continuous joint has no limits, even if the file has values.
+    for (XMLElement* limit : children(*joint, "limit")) {
       limit->DeleteAttribute("lower");
       limit->DeleteAttribute("upper");
     }

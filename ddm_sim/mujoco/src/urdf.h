@@ -1,4 +1,4 @@
-// Checks a URDF file, and changes what MuJoCo would read in another way than the author meant.
+// Checks a URDF file and rewrites the parts that MuJoCo would misread.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -10,8 +10,9 @@
 
 namespace ddm {
 
-/// Two joints of which one follows the other, as a <mimic> says: q_follower = multiplier q_leader +
-/// offset.
+/// Two coupled joints (<mimic>):
+///
+///   q_follower = multiplier q_leader + offset
 struct Coupling {
   std::string follower;
   std::string leader;
@@ -22,11 +23,11 @@ struct Coupling {
 struct Urdf {
   ModelText model;
   UrdfFacts facts;
-  std::vector<Coupling> couplings;  ///< <mimic>
-  bool contacts = false;            ///< a <mujoco> block asks for them
+  std::vector<Coupling> couplings;  ///< from the <mimic> elements
+  bool contacts = false;            ///< true: a <mujoco> block asks for contacts
 };
 
-/// @param path  of the file, from whose folder relative names count
+/// @param path  path of the file; relative names count from its folder
 /// @throws std::invalid_argument naming element, value, rule and remedy
 Urdf readUrdf(const std::string& text, const std::string& path, const FindPackage& find_package);
 

@@ -1,4 +1,4 @@
-// What must hold in a URDF file, each rule with a message that names element, line and remedy.
+// Rules for URDF files; each error message names element, line and remedy.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "urdf_checks.h"
 
@@ -17,7 +17,7 @@ namespace {
 
 using boost::algorithm::join;
 
-/// Sizes are positive; a mesh that is mirrored has a negative scale.
+/// Requires positive sizes. A mirrored mesh may have a negative scale.
 void requireSizes(const XMLElement& link, const XMLElement& shape) {
   for (const char* name : {"size", "radius", "length", "scale"}) {
     std::istringstream in(attribute(shape, name));

@@ -1,4 +1,4 @@
-// What must hold in a URDF file, each rule with a message that names element, line and remedy.
+// Rules for URDF files; each error message names element, line and remedy.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace ddm {
 
-// All functions throw std::invalid_argument if their rule is broken.
+// All functions of this file throw std::invalid_argument if a URDF breaks their rule.
 
 inline bool isOneOf(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
@@ -20,41 +20,42 @@ inline bool isOneOf(const std::vector<std::string>& names, const std::string& na
 
 std::vector<std::string> namesOf(const std::vector<XMLElement*>& elements);
 
-/// A number that an element within `parent` may have. If it is there, it must be finite.
+/// Optional attribute `name` of the element `child` within `parent`. The number must be finite.
 std::optional<double> number(const XMLElement& parent, const char* child, const char* name);
 
-/// As number(); 0 if it is not there.
+/// Same as number(), with 0 for a missing attribute.
 double numberOrZero(const XMLElement& parent, const char* child, const char* name);
 
-/// The link at the end `parent` or `child` of a joint.
+/// Name of the link in the element `parent` or `child` (argument `end`) of a joint.
 std::string linkOf(const XMLElement& joint, const char* end);
 
-/// Each element has a name of its own.
+/// Requires that all elements have names and that the names differ.
 void requireNames(const std::vector<XMLElement*>& elements);
 
 void requireNoXacro(XMLElement* root);
 
-/// A joint has a type that URDF has and that a plant can have. It has limits if its type needs them:
-/// MuJoCo would let a joint without limits, or with equal ones, move without end.
+/// Requires a joint type that URDF defines and that a plant supports, and limits if the type needs
+/// them. MuJoCo would let a joint without limits, or with equal limits, move without bounds.
 void requireTypeAndLimits(const XMLElement& joint);
 
-/// Joints connect the links to one tree.
+/// Requires that the joints connect all links to one tree.
 void requireTree(const std::vector<XMLElement*>& links, const std::vector<XMLElement*>& joints);
 
-/// A <visual> or <collision> has a shape that URDF has, with possible sizes.
+/// Requires that a <visual> or <collision> has a shape that URDF defines, with valid sizes.
 /// @return the shape
 XMLElement* requireShape(const XMLElement& link, const XMLElement& part);
 
-/// A link that a joint moves has mass and inertia, by itself or by the links that are fixed to it.
-/// @param fixed  links behind fixed joints, and what they are fixed to
+/// Requires that a moving link has mass and inertia, either its own or that of links that are fixed
+/// to it.
+/// @param fixed  links behind fixed joints, with their parents
 void requireInertia(const std::string& link, const std::map<std::string, XMLElement*>& links,
                     const std::map<std::string, std::string>& fixed);
 
-/// No joint follows itself by way of others.
-/// @param leaders  of the joints that follow another one
+/// Requires that no joint follows itself through other joints.
+/// @param leaders  leader of each joint that follows another joint
 void requireNoCycle(const std::map<std::string, std::string>& leaders);
 
-/// MuJoCo reads all that the <mujoco> block of a URDF says.
+/// Requires that MuJoCo reads every element of the URDF's <mujoco> block.
 void requireKnownBlock(const XMLElement& block);
 
 }  // namespace ddm

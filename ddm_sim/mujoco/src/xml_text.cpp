@@ -1,4 +1,4 @@
-// XML of model files: read, and written again for MuJoCo.
+// Reads the XML of model files, and writes it for MuJoCo.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "xml_text.h"
 
@@ -11,7 +11,7 @@
 namespace ddm {
 namespace {
 
-/// Prints elements alone, each in the line in which it was read.
+/// Prints elements without text and comments, each in its original line.
 class LinePrinter : public tinyxml2::XMLPrinter {
  public:
   LinePrinter() : XMLPrinter(nullptr, /*compact=*/true) {}
@@ -55,7 +55,7 @@ void requireUtf8(const XMLElement& element) {
   }
 }
 
-/// Why a text that begins as XML is none, as far as it is known.
+/// Likely reason why a text that begins like XML cannot be parsed. Empty if the reason is unknown.
 std::string whyBroken(const std::string& text) {
   if (text.find("\n<<<<<<< ") != std::string::npos) {
     return "; it has the marks of a merge conflict (<<<<<<<): resolve the conflict";

@@ -1,4 +1,4 @@
-// XML of model files: read, and written again for MuJoCo.
+// Reads the XML of model files, and writes it for MuJoCo.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -16,24 +16,25 @@ namespace ddm {
 using tinyxml2::XMLElement;
 using XmlDocument = std::unique_ptr<tinyxml2::XMLDocument>;
 
-/// Says by the first bytes of a file that it is no model or mesh but, say, a web page, and what
-/// helps: "is a web page: ...". Empty if it is none of the usual mistakes.
+/// Recognises from its first bytes a file that is neither model nor mesh, for example a web page.
+/// Returns the description and the remedy: "is a web page: ...". Empty if the bytes match none of
+/// the known mistakes.
 std::string mistakenFor(const std::string& bytes);
 
 /// @throws std::invalid_argument with the line and the reason if the text is not XML
 XmlDocument parseXml(const std::string& text);
 
-/// Elements and attributes of a document without comments. Each element starts in the line in which
-/// it was read, so that errors of MuJoCo name the lines of the file.
+/// Writes the elements and attributes of a document, without comments. Each element starts in its
+/// original line, so that the line numbers in MuJoCo's errors are those of the file.
 std::string xmlText(const tinyxml2::XMLDocument& document);
 
-/// Visits an element and all elements within it, outer ones first.
+/// Calls `visit` for an element and for all elements within it, outer elements first.
 void forEachElement(XMLElement* element, const std::function<void(XMLElement*)>& visit);
 
-/// The elements of this name directly within an element.
+/// Child elements with this name; deeper levels are not searched.
 std::vector<XMLElement*> children(const XMLElement& parent, const char* name);
 
-/// The value of an attribute; empty if there is none.
+/// Value of an attribute. Empty if the attribute does not exist.
 inline std::string attribute(const XMLElement& element, const char* name) {
   const char* const value = element.Attribute(name);
   return value == nullptr ? "" : value;
@@ -42,7 +43,8 @@ inline std::string attribute(const XMLElement& element, const char* name) {
 /// "<joint hinge> in line 7"
 std::string placeOf(const XMLElement& element);
 
-/// @throws std::invalid_argument, always: the element, its name and line, then the parts
+/// @throws std::invalid_argument with the element's name and line, then the parts; the function
+///         never returns
 template <class... Parts>
 [[noreturn]] void refuseElement(const XMLElement& element, const Parts&... parts) {
   refuse(placeOf(element), " ", parts...);

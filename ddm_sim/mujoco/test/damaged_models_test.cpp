@@ -1,4 +1,4 @@
-// Test with damaged model files: none may crash, hang, or be drawn black without a message.
+// Tests damaged model files: no file may crash or hang the program, or silently give black images.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_common/plain_file.h>
 #include <gtest/gtest.h>
@@ -70,7 +70,7 @@ class Damage {
     return printer.CStr();
   }
 
-  /// One of the places where a word of these characters begins and ends.
+  /// Position and length of a randomly chosen word of these characters.
   std::pair<std::size_t, std::size_t> wordOf(const std::string& text,
                                              const std::string& characters) {
     std::size_t begin = text.find_first_of(
@@ -95,9 +95,9 @@ class Damage {
   std::mt19937 engine_;
 };
 
-/// Loads, moves and draws the plant of a file.
-/// @throws std::exception with what is wrong
-/// @return the brightest grey value of its images
+/// Loads the plant of a file, draws its images and moves it by five steps.
+/// @throws std::exception with the problem of the file
+/// @return the brightest grey value of the images
 int tryPlant(const std::string& plant_file) {
   const std::unique_ptr<Plant> plant = makePlant(*readPlantFiles({plant_file}));
   int brightest = 0;

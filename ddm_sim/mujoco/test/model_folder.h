@@ -1,4 +1,4 @@
-// A folder with model files of a test.
+// Class ModelFolder: a temporary folder with model files for a test.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -16,11 +16,11 @@
 namespace ddm {
 namespace testing {
 
-/// A mesh as OBJ.
+/// A mesh in OBJ format.
 constexpr char kTetrahedron[] =
     "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nv 0 0 0.1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
 
-/// Of the only package that there is, `robots`.
+/// Temporary folder of `robots`, the only ROS package in these tests.
 class ModelFolder {
  public:
   std::string write(const std::string& name, const std::string& text) const {
@@ -47,7 +47,8 @@ class ModelFolder {
   TempFolder folder_;
 };
 
-/// An arm of two links in the plane, 0.2 and 0.1 m, with a motor in each joint.
+/// MJCF of an arm with two links (0.2 m and 0.1 m) that moves in a plane, with a motor at each
+/// joint.
 inline std::string armText(const std::string& more = "") {
   return R"(<mujoco><option timestep="0.01" gravity="0 0 0"/>
     <worldbody>
@@ -66,7 +67,7 @@ inline std::string armText(const std::string& more = "") {
          more + "</mujoco>";
 }
 
-/// The same as URDF, without a word on motors but the effort of the elbow.
+/// URDF of an arm with the same joints. The only property of a motor is the effort of the elbow.
 inline std::string armUrdf(const std::string& mesh = "") {
   const std::string shape =
       mesh.empty() ? "<box size='0.1 0.1 0.1'/>" : "<mesh filename='" + mesh + "'/>";
@@ -83,7 +84,7 @@ inline std::string armUrdf(const std::string& mesh = "") {
          "effort='3' velocity='1'/></joint></robot>";
 }
 
-/// Valid for both.
+/// Options that are valid for both arms, apart from the motors of the URDF.
 inline MujocoOptions armOptions() {
   MujocoOptions options;
   options.model = "arm";
@@ -93,7 +94,7 @@ inline MujocoOptions armOptions() {
   return options;
 }
 
-/// The plant of a model file with this text.
+/// A plant whose model file has this text.
 inline std::unique_ptr<MujocoPlant> plantOf(const std::string& text, const MujocoOptions& options,
                                             const std::string& name = "model.xml") {
   const ModelFolder folder;
@@ -104,7 +105,7 @@ inline std::unique_ptr<MujocoPlant> arm(const MujocoOptions& options = armOption
   return plantOf(armText(), options);
 }
 
-/// For the URDF, its motors in another order than its joints.
+/// Options for the URDF arm. The motors have another order than the joints.
 inline MujocoOptions urdfOptions() {
   MujocoOptions options = armOptions();
   options.motors = {"elbow", "shoulder"};
@@ -114,7 +115,7 @@ inline MujocoOptions urdfOptions() {
   return options;
 }
 
-/// What `make` says when it refuses; empty if it does not.
+/// Message of the std::invalid_argument that `make` throws. Empty if `make` throws nothing.
 template <class Make>
 std::string refusalOf(const Make& make) {
   try {

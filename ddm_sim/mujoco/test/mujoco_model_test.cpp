@@ -1,4 +1,4 @@
-// Tests of model files: what is read, what is refused by name, what a digest covers.
+// Tests the reading of model files, the messages for invalid files, and the digest.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_mujoco/mujoco_model.h"
 
@@ -23,7 +23,7 @@ using testing::refusalOf;
 
 class MujocoModelTest : public ::testing::Test {
  protected:
-  /// What is said of it has the words.
+  /// Whether loading fails with a message that contains all of these words.
   ::testing::AssertionResult isRefused(const std::string& uri,
                                        const std::vector<std::string>& words) const {
     return testing::names(refusalOf([&] { folder_.load(uri); }), words);
@@ -140,7 +140,7 @@ TEST_F(MujocoModelTest, DrawsNoCollisionShapeOfAUrdfOverAVisualOne) {
     return drawn;
   };
   EXPECT_EQ(drawnCylinders("<visual>"), 0);
-  EXPECT_EQ(drawnCylinders("</link>"), 1);  // of a link without visual shapes
+  EXPECT_EQ(drawnCylinders("</link>"), 1);  // the link has no visual shapes
 }
 
 TEST_F(MujocoModelTest, FindsPlacesAmongSitesAndBodies) {
@@ -184,7 +184,7 @@ TEST_F(MujocoModelTest, RefusesNumbersThatAreNotFinite) {
 }
 
 TEST_F(MujocoModelTest, SurvivesWhatCrashesMujoco) {
-  // A face of a vertex that does not exist.
+  // The last vertex of this face does not exist.
   std::string mesh = kTetrahedron;
   mesh.replace(mesh.rfind("2 3 4"), 5, "2 3 400000000");
   folder_.write("base.obj", mesh);

@@ -1,4 +1,4 @@
-// Tests of the options of plants from model files: what is refused by name, what completes them.
+// Tests options of plants with model files: invalid values, and values from the model file.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_mujoco/mujoco_options.h"
 
@@ -29,7 +29,7 @@ using testing::urdfOptions;
 
 using Words = std::vector<std::string>;
 
-/// armOptions() or urdfOptions() with other values, as a plant file gives them.
+/// Changes options by keys in YAML, as a plant file does.
 MujocoOptions with(const MujocoOptions& options, const std::string& yaml) {
   YAML::Node blocks;
   blocks["plant"] = toYaml(options);

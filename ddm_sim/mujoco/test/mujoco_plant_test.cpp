@@ -1,4 +1,4 @@
-// Tests of plants that a model file describes: motion, motors, starts and goals.
+// Tests plants with a model file: motion, motors, initial states and goals.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_mujoco/mujoco_plant.h"
 
@@ -55,7 +55,7 @@ TEST(MujocoPlant, TakesTheEffortOfAUrdfForTheLimitOfTheMotor) {
 }
 
 TEST(MujocoPlant, EndsAnUnstableTrialAndIsAsGoodAsNewAfterwards) {
-  // A rate that ten frames of this damping multiply beyond all bounds.
+  // Ten physics steps with this damping multiply a rate beyond all bounds.
   const std::string text = R"(<mujoco><option timestep="0.1" integrator="RK4" gravity="0 0 0"/>
     <worldbody><camera pos="0 0 1"/><body><joint name="hinge" damping="1000"/><geom size="0.1" mass="0.01"/></body></worldbody>
     <actuator><motor joint="hinge" ctrllimited="true" ctrlrange="-1 1"/></actuator></mujoco>)";
@@ -121,7 +121,8 @@ TEST(MujocoPlant, ShowsTheTargetToPeopleAlone) {
   MujocoOptions options = armOptions();
   options.goal_site = "tip";
   options.goal_distance = {0.15, 0.25};
-  for (const char* group : {"4", "0"}) {  // the learner sees group 0, in the pose of the file
+  // The learner's images show group 0, with the target where the file has it.
+  for (const char* group : {"4", "0"}) {
     const auto plant = plantOf(armText(R"(<worldbody><body name="target" mocap="true"
         pos="-0.1 -0.1 0"><geom size="0.03" contype="0" conaffinity="0" group=")" +
                                        std::string(group) + "\"/></body></worldbody>"),
@@ -140,7 +141,7 @@ TEST(MujocoPlant, ShowsTheTargetToPeopleAlone) {
 TEST(MujocoPlant, HasTheTimestepOfItsOptions) {
   MujocoOptions options = armOptions();
   options.timestep = 0.0125;
-  options.dt = 0.025;  // no multiple of the file's 0.01 s
+  options.dt = 0.025;  // not a multiple of the file's 0.01 s
   const auto coarse = arm(options);
   options.timestep = 0.00125;
   const auto fine = arm(options);

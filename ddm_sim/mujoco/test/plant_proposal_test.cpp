@@ -1,4 +1,4 @@
-// Tests of the plant that is proposed for a model file.
+// Tests the proposal of plant options for a model file.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_mujoco/plant_proposal.h"
 
@@ -21,7 +21,7 @@ namespace {
 using testing::ModelFolder;
 using Texts = std::vector<std::string>;
 
-/// A rod of 1 m and 1 kg on a joint, below which it hangs at 0.
+/// A rod of 1 m and 1 kg that hangs below its joint at position 0.
 std::string rodLink(const std::string& name) {
   return "<link name='" + name +
          "'><inertial><origin xyz='0 0 -0.5'/><mass value='1'/><inertia ixx='0.083' iyy='0.083' "
@@ -45,7 +45,7 @@ std::string pendulum(const std::string& limit, const std::string& axis = "0 1 0"
   return robot(rodLink("rod") + jointOf("hinge", "continuous", "base", "rod", axis, limit));
 }
 
-/// A cart on a rail along x, and a pole on it.
+/// A cart on a rail along x, with a pole on the cart.
 std::string cartPole(const std::string& rail) {
   return robot(
       "<link name='cart'><inertial><mass value='1'/><inertia ixx='0.01' iyy='0.01' izz='0.01' "
@@ -72,7 +72,8 @@ Eigen::Vector3d viewOf(const PlantProposal& proposal) {
   return (at - position).normalized();
 }
 
-/// Whether the edge of the image shows the background.
+/// Whether the edge of the image shows only the black background, so that the image contains the
+/// whole robot.
 bool showsAll(const MujocoPlant& plant, const Eigen::VectorXd& pose) {
   const Picture picture = plant.render(pose);
   int brightest = 0;
@@ -100,7 +101,7 @@ TEST_F(Proposal, MotorsAreTheTransmissionsOfAUrdfThenItsJointsWithAnEffortLimit)
       {two(strong, strong, ""), {"upper", "lower"}},
       {two(strong, weak, transmission), {"lower"}},
       {two(strong, strong + mimic, ""), {"upper"}},
-      {two(weak, weak + mimic, ""), {"upper"}},  // the only joint that moves by itself
+      {two(weak, weak + mimic, ""), {"upper"}},  // the other joint mimics this one
       {pendulum(""), {"hinge"}}};
   for (const auto& one : cases) EXPECT_EQ(propose(one.first).motors, one.second) << one.first;
   EXPECT_TRUE(testing::names(testing::refusalOf([&] { propose(two(weak, weak, "")); }),
@@ -170,7 +171,8 @@ TEST_F(Proposal, SpringsPullTheStartWhereTheyAreAtRest) {
       "</body></worldbody><actuator><motor joint='swing'/></actuator></mujoco>",
       "spring.xml");
   EXPECT_NEAR(proposal.options.start.at(0), kPi / 3.0, 0.01);
-  EXPECT_GT(proposal.options.max_torque.at(0), 20.0);  // 4 would move the link alone
+  // 4 N m would move the link without the spring.
+  EXPECT_GT(proposal.options.max_torque.at(0), 20.0);
 }
 
 TEST_F(Proposal, ALongRailIsShownInPartSoThatTheRobotIsNotTiny) {
@@ -178,9 +180,10 @@ TEST_F(Proposal, ALongRailIsShownInPartSoThatTheRobotIsNotTiny) {
       propose(cartPole("<limit lower='-50' upper='50' effort='9' velocity='1'/>"));
   EXPECT_TRUE(proposal.joints.at(0).shownInPart());
   EXPECT_LT(proposal.joints.at(0).shown_upper, 4.0);
-  EXPECT_EQ(proposal.options.error_joints, Texts({"pivot"}));  // degrees and metres do not mix
+  // Degrees and metres cannot be compared.
+  EXPECT_EQ(proposal.options.error_joints, Texts({"pivot"}));
   MujocoPlant plant(model_, proposal.options);
-  EXPECT_GT(checkPlant(proposal, &plant).changed_pixels, 25);  // of 2601
+  EXPECT_GT(checkPlant(proposal, &plant).changed_pixels, 25);  // of 2601 pixels
 }
 
 TEST_F(Proposal, TheCheckNamesAJointThatTheImageDoesNotShow) {

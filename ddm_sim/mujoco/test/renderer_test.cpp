@@ -1,4 +1,4 @@
-// Tests of the renderer: what is seen where, equal bytes for equal states, disturbances of the scene.
+// Tests the renderer: positions in the image, equal bytes for equal states, scene disturbances.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_mujoco/renderer.h"
 
@@ -33,7 +33,7 @@ Picture drawn(const SceneModel& scene, const RenderOptions& options) {
   return Renderer(scene.model, options).draw(*scene.data);
 }
 
-/// Middle of the pixels of a colour: column and row from the upper left corner [pixels].
+/// Mean position of the pixels with a colour: column and row from the upper left corner [pixels].
 struct Spot {
   int count = 0;
   double column = 0.0;
@@ -146,7 +146,7 @@ TEST(Renderer, GivesTheSameBytesOnAllThreads) {
 
 TEST(Renderer, DrawsOnTheCallersThread) {
   drawn(SceneModel(0.4), colourful());
-  std::vector<std::string> drawing;  // threads of Mesa that draw
+  std::vector<std::string> drawing;  // Mesa's threads for drawing
   for (const auto& task : boost::filesystem::directory_iterator("/proc/self/task")) {
     std::string name;
     std::ifstream((task.path() / "comm").string()) >> name;
@@ -235,7 +235,7 @@ TEST(SceneDisturbances, MoveTheCameraAroundThePointThatItLooksAt) {
   const SceneModel scene;
   RenderOptions options = colourful();
   const CameraModel plain = Renderer(scene.model, options).camera(*scene.data);
-  options.colour_shift = 0.1;  // leaves the camera alone
+  options.colour_shift = 0.1;  // does not change the camera
   EXPECT_EQ(Renderer(scene.model, options).camera(*scene.data).position, plain.position);
   options.camera_shift = 0.1;
   const CameraModel moved = Renderer(scene.model, options).camera(*scene.data);
@@ -246,7 +246,8 @@ TEST(SceneDisturbances, MoveTheCameraAroundThePointThatItLooksAt) {
   EXPECT_LT(to_target.normalized().cross(moved.rotation.col(2)).norm(), 1e-5);
   EXPECT_NEAR(to_target.norm() / distance, 1.0, 0.05 + 1e-5);
   EXPECT_GT((moved.position - plain.position).norm(), 0.01);
-  // Two turns of at most 9 degrees each move the view, a third one rolls it.
+  // Two rotations of at most 9 degrees each change the direction of the optical axis. A third one
+  // rotates the image around this axis.
   EXPECT_GT(moved.rotation.col(2).dot(ahead), std::cos(0.1 * M_PI * std::sqrt(0.5)));
 }
 

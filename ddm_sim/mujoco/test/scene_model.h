@@ -1,4 +1,4 @@
-// The scene that the tests of the renderer draw.
+// The scene that the renderer's tests draw.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -14,7 +14,7 @@
 namespace ddm {
 namespace testing {
 
-/// A model, and its data with the first joint at an angle.
+/// A model, and its data with the first joint at an angle [rad].
 struct SceneModel {
   explicit SceneModel(double angle = 0.0) {
     installMujocoHandlers();

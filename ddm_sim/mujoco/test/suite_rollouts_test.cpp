@@ -1,4 +1,4 @@
-// Plants suite_*: they move, and are rewarded, as the DeepMind Control Suite's own model files do.
+// Compares the plants suite_* with models of the DeepMind Control Suite: motion and rewards.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_plant_plugin/plant_config.h>
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ constexpr char kRollouts[] = DDM_SIM_SOURCE_DIR "/mujoco/test/suite_rollouts/rol
 constexpr double kStateBound = 1e-9;
 constexpr double kRewardBound = 1e-6;
 
-/// A control step of a trajectory; the README beside the file explains the columns.
+/// One control step of a trajectory. The README beside the file explains the columns.
 using Row = std::map<std::string, std::string>;
 using Trajectory = std::vector<Row>;
 
@@ -33,7 +33,7 @@ std::vector<std::string> cellsOf(const std::string& line) {
   return cells;
 }
 
-/// Trajectories of a task, one after the other.
+/// All trajectories of a task.
 std::vector<Trajectory> trajectoriesOf(const std::string& task) {
   std::ifstream file(kRollouts);
   std::string line;
@@ -51,7 +51,7 @@ std::vector<Trajectory> trajectoriesOf(const std::string& task) {
   return out;
 }
 
-/// The cells PREFIX_0, PREFIX_1, ... that are not empty.
+/// Values of the cells PREFIX_0 and PREFIX_1 for each prefix. Skips empty cells.
 Eigen::VectorXd numbersOf(const Row& row, const std::vector<std::string>& prefixes) {
   std::vector<double> numbers;
   for (const std::string& prefix : prefixes) {
@@ -69,7 +69,7 @@ std::unique_ptr<Plant> plantOf(const std::string& name) {
   return makePlant(*readPlantFiles({DDM_SIM_SOURCE_DIR "/config/" + name + ".yaml"}));
 }
 
-/// A plant, its task, and the column of its reward.
+/// A plant, its task in the file, and the column with its reward.
 struct Case {
   std::string plant, task, reward;
 };
@@ -107,7 +107,8 @@ TEST_P(SuiteRolloutsTest, MovesAndIsRewardedAsTheSuiteIs) {
       rewarded += expected;
       if (t + 1 == trajectory.size()) break;
       torque = numbersOf(trajectory[t], {"effort"});
-      if (GetParam().reward == "reward") {  // whose sum over the physics frames is in the file
+      // The file has the sum of this reward over the physics steps.
+      if (GetParam().reward == "reward") {
         ASSERT_NEAR(plant->stepReward(state, torque).value(),
                     std::stod(trajectory[t].at("return_of_step")), kRewardBound)
             << "step " << t;
@@ -124,7 +125,7 @@ INSTANTIATE_TEST_SUITE_P(Tasks, SuiteRolloutsTest, ::testing::ValuesIn(kCases),
 TEST(SuitePlants, StartWithinTheRangesOfTheSuite) {
   struct Expected {
     const char* plant;
-    Eigen::VectorXd middle, half_width;  // of positions [rad, m]
+    Eigen::VectorXd middle, half_width;  // of the positions [rad, m]
   };
   const auto two = [](double a, double b) { return Eigen::VectorXd(Eigen::Vector2d(a, b)); };
   const double pi = 3.14159265358979312;

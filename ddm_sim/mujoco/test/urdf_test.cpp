@@ -1,4 +1,4 @@
-// Tests of URDF files as people have them: which are refused by name, and how others are read.
+// Tests URDF files: messages for invalid files, and the models of valid ones.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_msgs/testing/expect_error.h>
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ using testing::ModelFolder;
 using testing::refusalOf;
 using testing::urdfOptions;
 
-/// A base, an arm on it by the joint `hip`, and what a test adds.
+/// Text of a URDF: a base, a thigh on the joint `hip`, and the elements in `more`.
 struct Leg {
   std::string type = "continuous";
   std::string mass = "<mass value='1'/>";
@@ -74,7 +74,7 @@ class UrdfTest : public ::testing::Test {
     return load(leg);
   }
 
-  /// A tetrahedron as STL.
+  /// Writes a tetrahedron in STL format.
   void writeStl(const std::string& name, float size, bool ascii) const {
     const float corners[4][3] = {{0, 0, 0}, {size, 0, 0}, {0, size, 0}, {0, 0, size}};
     const int faces[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
@@ -159,7 +159,8 @@ TEST_F(UrdfTest, NamesALinkWithAnInertiaThatNoBodyHasButTakesRounding) {
     EXPECT_TRUE(isRefused(with(numbers), {"thigh", "line 3", "principal inertias"})) << numbers;
   }
   const auto nearly = load(with("ixx='0.001' iyy='0.01' izz='0.015' ixy='0'"));
-  const mjtNum* const kept = nearly->get().body_inertia + 3;  // the largest first
+  // MuJoCo sorts principal inertias, largest first.
+  const mjtNum* const kept = nearly->get().body_inertia + 3;
   EXPECT_NEAR(kept[0], 0.015, 1e-12);
   EXPECT_NEAR(kept[1], 0.01, 1e-12);
   EXPECT_NEAR(kept[2], 0.005, 1e-7);
@@ -207,7 +208,7 @@ TEST_F(UrdfTest, NamesLimitsThatCannotBe) {
     }
   }
   leg.in_joint = "<limit lower='-90' upper='90' effort='5' velocity='1'/>";
-  EXPECT_EQ(load(leg)->get().jnt_range[1], 90.0);  // m
+  EXPECT_EQ(load(leg)->get().jnt_range[1], 90.0);  // in metres: the joint is prismatic
   leg.type = "revolute";
   EXPECT_TRUE(isRefused(leg, {"hip", "\"90\"", "URDF has radians"}));
   leg.in_joint = "<limit lower='-1' upper='1' effort='-5' velocity='1'/>";

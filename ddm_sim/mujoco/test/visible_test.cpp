@@ -1,4 +1,4 @@
-// Tests of what images show: hidden groups, files without light, images that do not change.
+// Tests the visibility of models: hidden groups, missing light, images that do not change.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_msgs/testing/expect_error.h>
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ namespace {
 using testing::ModelFolder;
 using testing::refusalOf;
 
-/// A rod that turns before a camera.
+/// MJCF of a rod that turns in front of a camera.
 struct Rod {
   std::string geom = "group='0'";
   std::string second;  ///< another geom of the rod
@@ -46,7 +46,7 @@ MujocoOptions rodOptions() {
 
 class VisibleTest : public ::testing::Test {
  protected:
-  /// Grey values of the rod upright.
+  /// Grey values of an image of the upright rod.
   std::vector<std::uint8_t> image(const Rod& rod) const {
     const auto model = folder_.loadText(rod.text());
     requireVisible(model, rodOptions());
@@ -128,7 +128,7 @@ TEST_F(VisibleTest, RefusesAUrdfWithoutShapes) {
                      {"plant/camera", "no link that a joint moves has a shape", "<visual>"}));
 }
 
-/// One of each kind of actuator that MuJoCo has, on this joint or on another one.
+/// The list has each kind of actuator in MuJoCo, on the plant's own joint or on another one.
 TEST(Motors, SwitchOffAllActuatorsOfTheFile) {
   const std::string actuators[] = {
       "<position joint='hinge' kp='50'/>",

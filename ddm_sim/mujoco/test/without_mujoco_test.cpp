@@ -1,4 +1,4 @@
-// Stands for a test program of model files where ddm_sim was built without MuJoCo.
+// Replaces the tests of model files if ddm_sim is built without MuJoCo.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 

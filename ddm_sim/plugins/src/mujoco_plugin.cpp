@@ -1,4 +1,4 @@
-// The plant `mujoco` as a configuration describes it.
+// Plugin of the plant type `mujoco`.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mujoco_plugin.h"
 
@@ -12,21 +12,21 @@
 namespace ddm {
 namespace {
 
-/// Absolute, because nodes run in another folder than the user, and an experiment may be resumed
-/// from another folder.
+/// Makes a path absolute, because nodes run in another folder than the user's, and an experiment
+/// may be resumed from another folder.
 std::string absolute(const std::string& path) {
   if (path.empty() || path.rfind("package://", 0) == 0) return path;
   return std::filesystem::absolute(path).lexically_normal().string();
 }
 
-/// Reads the model file once: all plants are of that model, whatever happens to the file.
+/// Reads the model file once, so that all plants use the same model even if the file changes.
 class MujocoPlugin : public PlantPlugin {
  public:
   std::string type() const override { return "mujoco"; }
 
   void read(ParamReader* reader) override {
     options_ = reader->read<MujocoOptions>("plant");
-    if (!options_.problems().empty()) return;  // the reader has them
+    if (!options_.problems().empty()) return;  // the reader collects the problems
     options_.model = absolute(options_.model);
     model_ = std::make_shared<MujocoModel>(
         options_.model, [](const std::string& package) { return ros::package::getPath(package); });

@@ -1,4 +1,4 @@
-// The plant `mujoco` as a configuration describes it.
+// Plugin of the plant type `mujoco`.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -8,6 +8,7 @@
 
 namespace ddm {
 
+/// Makes the plugin of MuJoCo plants.
 /// @throws std::invalid_argument if ddm_sim was built without MuJoCo
 std::shared_ptr<PlantPlugin> makeMujocoPlugin();
 

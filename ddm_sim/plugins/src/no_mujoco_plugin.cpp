@@ -1,4 +1,4 @@
-// The plant `mujoco` where ddm_sim was built without MuJoCo.
+// Plugin of the plant type `mujoco` if ddm_sim was built without MuJoCo: reports an error.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <stdexcept>
 

@@ -1,4 +1,4 @@
-// The block `plant` of any plant, ours or another package's, and the file that describes it.
+// Reads the block `plant` of a configuration, and finds the file that describes a plant.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_plant_plugin/plant_config.h"
 
@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 
 using boost::algorithm::join;
 
-/// `plant/type` alone, which decides what other keys there are.
+/// The key `plant/type` alone, which determines the other keys of the block.
 struct TypeOption {
   std::string type = "pendulum";
 
@@ -39,7 +39,7 @@ struct TypeOption {
 
 using MakePlugin = std::function<std::shared_ptr<PlantPlugin>()>;
 
-/// The plants of this package, by `plant/type`.
+/// The plant types of this package.
 const std::map<std::string, MakePlugin>& ownPlants() {
   static const std::map<std::string, MakePlugin> plants = {
       {"moving_tile", std::make_shared<PlantPluginOf<MovingTile, MovingTileOptions>>},
@@ -59,7 +59,7 @@ std::shared_ptr<PlantPlugin> makePlugin(const std::string& type) {
         "plant/type must be a plant of ddm_sim or PACKAGE/CLASS of another package, got \"" + type +
         "\": there are " + join(known, ", "));
   }
-  // Never destroyed: the plants that it has loaded, and their code, live until the program ends.
+  // Never destroyed, because loaded plants and their code must exist until the program ends.
   static auto* const loader =
       new pluginlib::ClassLoader<PlantPlugin>("ddm_sim", "ddm::PlantPlugin");
   if (!loader->isClassAvailable(type)) {
@@ -99,7 +99,8 @@ std::vector<std::string> plantsOf(const std::string& package) {
 }  // namespace
 
 std::shared_ptr<const PlantPlugin> readPlant(ParamReader* reader) {
-  ParamReader ahead = *reader;  // a copy: what it finds wrong is not yet known to be wrong
+  // a copy, so that the other keys of the block are not reported as unknown
+  ParamReader ahead = *reader;
   const std::shared_ptr<PlantPlugin> plugin = makePlugin(ahead.read<TypeOption>("plant").type);
   plugin->read(reader);
   return plugin;

@@ -1,4 +1,4 @@
-// Limits of a robot's joints, and whether its reports keep them.
+// Checks the joint states of a robot against limits.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_robot/joint_limits.h"
 
@@ -50,7 +50,7 @@ void JointLimits::take(const JointReport& report, std::size_t index, Joint* join
   if (!rivalry.empty()) joint->violation = rivalry;
   joint->refusal = joint->stamps.take(report.arrival, report.clock, report.stamp);
   if (!joint->refusal.empty()) {
-    joint->stamps.restart();  // the next report is compared with the clock of this machine
+    joint->stamps.restart();  // compares the next stamp with the clock of this machine
     return;
   }
   joint->heard = joint->stamps.taken();
@@ -93,7 +93,7 @@ std::string JointLimits::findRival(Joint* joint, SteadyTime now, const std::stri
 std::string JointLimits::check(const Joint& joint, std::size_t index, const JointReport& report) {
   const std::vector<double>& positions = report.positions;
   const std::vector<double>& velocities = report.velocities;
-  const auto within = [](double value, double lower, double upper) {  // never so for NaN
+  const auto within = [](double value, double lower, double upper) {  // false for NaN
     return std::isfinite(value) && value >= lower && value <= upper;
   };
   std::ostringstream text;

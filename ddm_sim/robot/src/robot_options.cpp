@@ -1,4 +1,4 @@
-// Parameters of a robot: what is refused.
+// Rules for the parameters of a robot.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_robot/robot_options.h"
 

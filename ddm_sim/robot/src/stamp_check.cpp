@@ -1,4 +1,4 @@
-// Stamps of a sensor: whether they can be trusted, and which images of a camera are acted on.
+// Checks the stamps of a sensor, and selects the camera images for the control loop.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_robot/stamp_check.h"
 
@@ -9,18 +9,19 @@
 namespace ddm {
 namespace {
 
-constexpr std::size_t kNumOffsets = 100;  // some seconds of a camera: drift within them is nothing
-constexpr int kLargestDrift = 500;        // clocks drift apart by less than 1 part in this many
-constexpr std::size_t kNumIntervals = 9;  // between images
+// Some seconds of images, in which the drift of clocks is negligible.
+constexpr std::size_t kNumOffsets = 100;
+constexpr int kLargestDrift = 500;        // clocks drift apart by less than 1 part in kLargestDrift
+constexpr std::size_t kNumIntervals = 9;  // number of intervals between images for the median
 
-/// The value that `index` others precede in order.
+/// Returns the value at position `index` of the sorted values.
 Stamp ranked(std::deque<Stamp> values, std::size_t index) {
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(index);
   std::nth_element(values.begin(), at, values.end());
   return *at;
 }
 
-/// Appends a value, and forgets the oldest beyond a number of values.
+/// Appends a value, and removes the oldest value if there are more than `max_count`.
 void append(Stamp value, std::size_t max_count, std::deque<Stamp>* values) {
   values->push_back(value);
   if (values->size() > max_count) values->pop_front();

@@ -1,4 +1,4 @@
-// The gate between a controller and the motors: which torque they get, and when it is zero.
+// The gate between a controller and the motors: decides which torque the motors receive.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_robot/torque_gate.h"
 
@@ -66,7 +66,7 @@ void TorqueGate::endTrial() {
   if (inTrial()) wait();
 }
 
-/// Zero torque, and no image that an answer is due to.
+/// Sets zero torque, and gives up the images whose torque is not due yet.
 void TorqueGate::wait() {
   state_ = resetting_ ? State::kResetting : State::kWaiting;
   while (!pending_.empty()) giveUpFirst();
@@ -146,7 +146,7 @@ void TorqueGate::setListeners(int num_listeners) {
   if (num_listeners == 0 && inTrial()) stop(kNoListener);
 }
 
-/// Notices what has not come.
+/// Changes the state if an image, a torque or a joint state is overdue.
 void TorqueGate::expire(SteadyTime now) {
   while (!pending_.empty() && now - pending_.front().taken > dt_) {
     giveUpFirst();

@@ -1,4 +1,4 @@
-// A cart on a rail, pushed by a motor: a plant as any package can bring its own.
+// Example of a plant in a package of its own: a cart on a rail, pushed by a motor.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_plant_plugin/plant_plugin.h>
 #include <ddm_sim/plant.h>
@@ -10,14 +10,14 @@
 
 namespace ddm_cart {
 
-/// The block `plant`: the keys of every plant (max_torque is a force here [N]), then our own.
+/// Block `plant`: the keys of every plant (max_torque is a force here [N]), then those of the cart.
 struct CartOptions : ddm::PlantOptions {
   double mass = 1.0;           ///< m [kg]
-  double friction = 2.0;       ///< b, viscous [N s/m]
-  double track = 1.0;          ///< from the middle of the rail to each buffer [m]
-  double goal = 0.6;           ///< where the cart is to stop [m]
-  double half_width = 0.3;     ///< half the width and height of the cart in the picture [m]
-  double half_extent = 1.2;    ///< from the middle of the picture to its edge [m]
+  double friction = 2.0;       ///< b, viscous friction [N s/m]
+  double track = 1.0;          ///< distance from the middle of the rail to each buffer [m]
+  double goal = 0.6;           ///< goal position of the cart [m]
+  double half_width = 0.3;     ///< half the width and height of the cart in the image [m]
+  double half_extent = 1.2;    ///< distance from the middle of the image to its edge [m]
   double edge_softness = 0.2;  ///< width over which grey falls from 1 to 0 [m]
 
   CartOptions() { max_torque = {2.0}; }
@@ -64,9 +64,11 @@ ddm::PlantInfo infoOf(const CartOptions& options) {
   return info;
 }
 
-/// State (x, v): position [m] and rate [m/s]; one force [N]. Between the buffers
+/// The state is (x, v), position [m] and rate [m/s]; u is a force [N]. Between the buffers
 ///
-///   m v' = u - b v,   x' = v,   solved exactly over dt; at a buffer it stops
+///   m v' = u - b v,   x' = v
+///
+/// is solved exactly over dt. The cart stops at a buffer.
 class Cart : public ddm::Plant {
  public:
   explicit Cart(const CartOptions& options)
@@ -93,11 +95,11 @@ class Cart : public ddm::Plant {
     return Eigen::VectorXd::Constant(1, state[0]);
   }
 
-  /// White on black; grey falls from 1 to 0 over edge_softness, as at the pendulum's rod.
+  /// Draws a white cart on black. Grey falls from 1 to 0 over edge_softness at the edges.
   ddm::Picture draw(const Eigen::VectorXd& state) const override {
     const int size = options_.picture_size;
     const double pixel = 2.0 * options_.half_extent / size;  // [m]
-    const auto inside = [this](double offset) {              // 1 in the middle, 0 beyond the edge
+    const auto inside = [this](double offset) {              // 1 inside the cart, 0 outside
       const double depth = options_.half_width - std::abs(offset);
       return std::min(std::max(depth / options_.edge_softness + 0.5, 0.0), 1.0);
     };

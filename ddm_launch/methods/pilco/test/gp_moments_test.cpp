@@ -1,4 +1,4 @@
-// Tests of moment matching through a GP: samples, derivatives, limits, refusals.
+// Tests of moment matching through a GP: samples, derivatives, limits and invalid inputs.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pilco/gp_moments.h"
 

@@ -1,4 +1,4 @@
-// Tests of full and sparse GPs: their likelihoods, their training, and the learner that chooses between them.
+// Tests of full and sparse GPs: likelihoods, training, and the choice between full and sparse.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pilco/gp.h"
 
@@ -24,7 +24,8 @@ using ::ddm::testing::vectorOf;
 
 constexpr int kIterations = 300;
 
-/// A smooth function of three inputs, the last of which does not matter, with noise of std 0.05.
+/// A smooth function of three inputs with noise of standard deviation 0.05. The function does not
+/// depend on the third input.
 struct Toy {
   explicit Toy(int n, unsigned seed = 1) : inputs(randomMatrix(3, n, seed)), targets(n, 2) {
     const Eigen::ArrayXd x = inputs.row(0), y = inputs.row(1);
@@ -71,9 +72,9 @@ TEST(NegativeLogLikelihood, GradientMatchesDifferences) {
 }
 
 TEST(NegativeLogLikelihood, IsInfiniteWherePositiveDefinitenessIsLost) {
-  Eigen::MatrixXd inputs = Eigen::MatrixXd::Zero(3, 4);  // four times the same point
+  Eigen::MatrixXd inputs = Eigen::MatrixXd::Zero(3, 4);  // the same point four times
   Eigen::VectorXd theta = someTheta();
-  theta[4] = -30.0;  // and no noise to tell them apart
+  theta[4] = -30.0;  // and almost no noise
   Eigen::VectorXd gradient;
   EXPECT_EQ(std::numeric_limits<double>::infinity(),
             negativeLogLikelihood(inputs, vectorOf({1, 2, 3, 4}), theta, &gradient));
@@ -96,7 +97,7 @@ TEST(Penalty, IsOneWhereALimitIsReachedAndNothingFarInsideAndItsGradientMatchesD
   theta[2] = std::log(1000.0) - 1.0;
   EXPECT_NEAR(3.0, penalty(theta, input_std), 1e-12);
   const auto f = [&](const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
-    if (gradient != nullptr) *gradient = x;  // that of the first term
+    if (gradient != nullptr) *gradient = x;  // gradient of the first term
     return 0.5 * x.squaredNorm() + penalty(x, input_std, gradient);
   };
   theta << std::log(190.0), std::log(9.0), 3.0, -3.8;  // near the limits
@@ -135,7 +136,7 @@ TEST(TrainGp, TrainsAnewAndSaysSoWhereThePreviousOptimumCannotBeEvaluated) {
 
 TEST(TrainGp, TellsThatTheLikelihoodCannotBeEvaluatedAtAll) {
   Toy toy(20);
-  toy.targets.col(1) *= 1e-161;  // its noise variance is below what double can tell from 0
+  toy.targets.col(1) *= 1e-161;  // rounding hides its noise variance
   const GpFit fit = trainGp(toy.inputs, toy.targets, kIterations);
   EXPECT_FALSE(fit.ok);
   EXPECT_TRUE(names(fit.message, {"output 2: ", "likelihood"}));
@@ -162,7 +163,7 @@ TEST(TrainGp, RefusesDataItCannotLearnFromAndNamesThem) {
   EXPECT_TRUE(refused(toy.inputs.leftCols(1), toy.targets.topRows(1), {" 2 points", "got 1"}));
 }
 
-/// The same with two inputs, and hyper-parameters.
+/// The toy problem with two inputs and with given hyper-parameters.
 struct SparseToy : Toy {
   explicit SparseToy(int n) : Toy(n) {
     inputs = inputs.topRows(2).eval();
@@ -174,7 +175,7 @@ struct SparseToy : Toy {
   Hyperparameters hyperparameters;
 };
 
-/// Matrices of one output as the formulas have them, inverted outright.
+/// Matrices of one output, computed literally from the formulas with matrix inverses.
 struct PlainFitc {
   PlainFitc(const SparseToy& toy, const Eigen::MatrixXd& inducing, int output) {
     const Eigen::VectorXd theta = thetaOf(toy.hyperparameters, output);
@@ -316,7 +317,7 @@ TEST(LearnGp, LearnsHyperparametersFromSomePointsAndPredictsWithAll) {
   const GpFit from_all = trainGp(toy.inputs, toy.targets, 300);
   const Eigen::MatrixXd difference = full.model.hyperparameters.log_length_scales -
                                      from_all.model.hyperparameters.log_length_scales;
-  EXPECT_GT(difference.cwiseAbs().maxCoeff(), 1e-6);  // other points
+  EXPECT_GT(difference.cwiseAbs().maxCoeff(), 1e-6);  // they are trained on different points
   EXPECT_LT(difference.cwiseAbs().maxCoeff(), 1.0);   // of the same function
   const GpFit few = learn(30);
   ASSERT_TRUE(few.ok) << few.message;

@@ -26,7 +26,7 @@ SquashedPolicy randomPolicy(int dim, int controls, const Eigen::VectorXd& max_co
   return SquashedPolicy(std::move(rbf), max_control);
 }
 
-/// A pendulum that has been seen only a few times: state [dphi, phi], one torque.
+/// A pendulum with little data: the state is [dphi, phi], and there is one torque.
 struct Pendulum {
   explicit Pendulum(unsigned seed, bool noisy = false) : random(seed) {
     model = randomGp(4, 2, 12, true, random);
@@ -56,8 +56,8 @@ struct Pendulum {
   return ddm::testing::gradientMatches(J, parameters, tolerance);
 }
 
-/// Without angles and with a policy that is linear where the state is, state and control are jointly Gaussian, and the
-/// step is exact. The noise of measurements is as large as the state's spread.
+/// Without angles and with a policy that is linear near the state, state and control are jointly
+/// Gaussian and the step is exact. The measurement noise is as large as the spread of the state.
 TEST(Propagation, HasTheMomentsOfSamplesWhereAllIsGaussianAlsoIfThePolicySeesNoise) {
   for (const bool noisy : {false, true}) {
     std::mt19937_64 random(2);
@@ -66,7 +66,8 @@ TEST(Propagation, HasTheMomentsOfSamplesWhereAllIsGaussianAlsoIfThePolicySeesNoi
     model.hyperparameters.log_noise_std = noise_std.array().log();
     PropagationOptions options;
     options.noisy_policy_input = noisy;
-    // Two wide basis functions of opposite signs, and a squashing far from its bound.
+    // Two wide basis functions of opposite signs are linear near the state. The squashing is far
+    // from its bound.
     RbfPolicy rbf(2, 1, 2);
     Eigen::MatrixXd centres(2, 2);
     centres << 60.0, -60.0, -40.0, 40.0;
@@ -77,13 +78,14 @@ TEST(Propagation, HasTheMomentsOfSamplesWhereAllIsGaussianAlsoIfThePolicySeesNoi
     const Gaussian state = randomGaussian(2, 2, 0.6, random);
     Propagation::Tape tape;
     const Gaussian next = Propagation(model, options).step(policy, state, &tape);
-    // cov(x, x') = s + s (gain of delta by x, directly and through the control)
+    // cov(x, x') = s + s (gain from x to delta, directly and through the control)
     const Eigen::MatrixXd gain = Eigen::MatrixXd::Identity(2, 2) + tape.delta.gain.topRows(2) +
                                  tape.control.gain * tape.delta.gain.bottomRows(1);
 
     GpSampler delta(model, &random);
     std::normal_distribution<double> normal;
-    const double jitter = 1.5 * kBound * std::sqrt(RbfPolicy::kJitter);  // slope of the squashing
+    // slope of the squashing at 0
+    const double jitter = 1.5 * kBound * std::sqrt(RbfPolicy::kJitter);
     const auto sample = [&](const Eigen::VectorXd& x) {
       Eigen::VectorXd seen = x;
       for (int i = 0; noisy && i < 2; ++i)
@@ -146,7 +148,7 @@ TEST(LongTermCost, IsNaNWithAGradientOfNaNWhereNothingCanBePredicted) {
   EXPECT_EQ(gradient.size(), good.size());
   EXPECT_TRUE(gradient.array().isNaN().all());
   EXPECT_EQ(cost.states().size(), 1u);
-  EXPECT_TRUE(std::isfinite(cost.evaluate(good, &gradient)));  // and it recovers
+  EXPECT_TRUE(std::isfinite(cost.evaluate(good, &gradient)));  // later calls work again
   EXPECT_TRUE(gradient.allFinite());
 }
 

@@ -1,4 +1,4 @@
-// Tests of what the baselines observe, and of the task that they make of it.
+// Tests of the observations of the baselines, and of the task in their coordinates.
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include "pilco/observations.h"
@@ -29,7 +29,7 @@ Eigen::VectorXd pair(double first, double second) {
 
 std::unique_ptr<Plant> pendulum() { return makePlant(*testing::plantOf("{type: pendulum}")); }
 
-/// An arm of another package, one joint with angle and rate.
+/// An arm as another package could define it: one joint with angle and rate.
 testing::ToyPlant::Traits armTo(double angle) {
   testing::ToyPlant::Traits traits;
   traits.info.joints = {{"arm", JointKind::kAngle}};
@@ -69,7 +69,7 @@ TEST_F(TrueStateTest, LearningMeetsTheMeasurementsThatThePolicyActedOn) {
 }
 
 TEST_F(TrueStateTest, FramesThatDoNotFitTheBagBesideThemAreRefusedWithTheFile) {
-  DataSet data(2, 1);  // two trials of 3 frames
+  DataSet data(2, 1);  // two trials of 3 samples
   for (int t = 0; t < 6; ++t) data.append(Grey(4, 0), Eigen::VectorXd::Zero(1), t % 3 == 0);
   const auto observation = observeTrueState(*plant_);
   std::vector<std::string> bags;
@@ -83,7 +83,7 @@ TEST_F(TrueStateTest, FramesThatDoNotFitTheBagBesideThemAreRefusedWithTheFile) {
   };
   const auto learn = [&] { observation->learn(bags, data, TrialId()); };
   write("a", 2);
-  write("b", 4);  // as many in all
+  write("b", 4);  // the total number of samples is correct
   EXPECT_TRUE(throwsNaming<std::runtime_error>(
       learn, {"a/trajectory.csv", "the 3 frames", "got 2", "use another"}));
   bags.clear();
@@ -101,13 +101,13 @@ TEST_F(TrueStateTest, TheTaskIsUprightWithinTheLengthOfTheRodAlsoForAPlugin) {
   const PilcoTask task = trueStateTask(*plant_);
   EXPECT_EQ(task.angles, std::vector<int>{1});
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(2, 2);
-  covariance.diagonal() << 0.5 * 0.5, 0.3 * 0.3;  // rate first
+  covariance.diagonal() << 0.5 * 0.5, 0.3 * 0.3;  // the rate is first
   EXPECT_EQ(task.start.covariance, covariance);
   EXPECT_EQ(task.start.mean, Eigen::VectorXd::Zero(2));
   const std::unique_ptr<Plant> plugin = makePlant(testing::ToyMaker(armTo(-M_PI)));
   for (const PilcoTask& each : {task, trueStateTask(*plugin)}) {
     for (const double angle : {0.0, 1.0, 3.0, M_PI}) {
-      const double lengths = 2.0 * std::cos(angle / 2.0);  // of the tip from its goal
+      const double lengths = 2.0 * std::cos(angle / 2.0);  // distance of the tip from its goal
       EXPECT_NEAR(each.cost.expected(pilco::known(pair(0.0, angle))),
                   1.0 - std::exp(-2.0 * lengths * lengths), 1e-12);
     }
@@ -126,7 +126,7 @@ TEST_F(TrueStateTest, APlantThatIsNoPendulumIsRefused) {
   }
 }
 
-/// Images of a rod that turns round, and of its goal.
+/// Images of a rod that rotates, and the goal image.
 DataSet imagesOf(const Plant& plant) {
   DataSet data(plant.render(plant.state()).width, 1);
   for (int t = 0; t < 40; ++t) {
@@ -136,7 +136,7 @@ DataSet imagesOf(const Plant& plant) {
   return data;
 }
 
-/// What is learned from is what is observed, and the goal image is the goal.
+/// Checks that observe() gives the same x as learn(), and that the goal image has zero cost.
 void expectConsistent(Observation* observation, const DataSet& data) {
   const auto [X, task] = observation->learn({}, data, TrialId());
   ASSERT_EQ(X.rows(), static_cast<Eigen::Index>(observation->names().size()));
@@ -171,7 +171,7 @@ TEST(ImageTask, TakesGoalStartAndScaleFromTheData) {
   EXPECT_NEAR(task.cost.expected(pilco::known(goal + pair(0.5 * spread, 0.0))),
               1.0 - std::exp(-0.5), 1e-12);
   EXPECT_EQ(task.start.mean, pair(2.0, 1.0));
-  // Scatter of (1, 0) and (3, 2) about their mean is 2 everywhere, prior (0.1 spread)^2 / 2.
+  // The scatter of (1, 0) and (3, 2) is 2 in all entries; the prior is (0.1 spread)^2 / 2.
   const double prior = 0.01 * spread * spread / 2.0;
   EXPECT_NEAR(task.start.covariance(0, 0), (2.0 + prior) / 2.0, 1e-12);
   EXPECT_NEAR(task.start.covariance(0, 1), 1.0, 1e-12);

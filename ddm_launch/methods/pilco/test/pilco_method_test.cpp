@@ -1,4 +1,4 @@
-// Tests of the baselines: what they leave, what they carry from trial to trial, what they refuse.
+// Tests of the PILCO methods: their files, what one training passes to the next, and refusals.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pilco/pilco_method.h"
 
@@ -32,7 +32,7 @@ constexpr char kSmall[] =
     "pilco: {horizon: 8, num_centres: 4}\ngp: {max_iterations: 20}\n"
     "policy_search: {max_iterations: 2}\nsparse_gp: {max_points: 40, first_iterations: 3}\n";
 
-/// A small experiment with one of the baselines.
+/// A small experiment with one of the PILCO methods.
 Configuration smallConfiguration(const std::string& method, const std::string& runs) {
   Configuration all = testing::toyConfiguration(runs);
   all.experiment.method = method;
@@ -61,7 +61,8 @@ std::vector<std::string> linesOf(const std::string& text) {
   return lines;
 }
 
-/// The number in a column of a row, counted from 0.
+/// The number in a column of a row.
+/// @param column  counted from 0
 double numberAt(const std::string& row, size_t column) {
   std::vector<std::string> columns;
   boost::split(columns, row, boost::is_any_of(","));
@@ -91,12 +92,12 @@ TEST_F(PilcoMethodTest, EveryBaselineRunsAndLeavesItsFiles) {
     const Configuration all = smallConfiguration(method, folder(method));
     runSmall(all);
     const std::vector<std::string> rows = linesOf(textOf(folder(method) + "/trials.csv"));
-    ASSERT_EQ(rows.size(), 4u) << method;  // header, random trial and two more
+    ASSERT_EQ(rows.size(), 4u) << method;  // header, random trial and two more trials
     EXPECT_EQ(rows[3].substr(0, 6), "7,2,90") << method;
     EXPECT_NE(rows[3].find(",,,"), std::string::npos) << method << ": no V_R, no V_P: " << rows[3];
     const std::vector<std::string> prediction =
         linesOf(textOf(folder(method) + "/trial_002/prediction.csv"));
-    EXPECT_EQ(prediction.size(), 10u) << method;  // header, steps 0 to 8
+    EXPECT_EQ(prediction.size(), 10u) << method;  // header and steps 0 to 8
     EXPECT_EQ(fs::exists(folder(method) + "/trial_002/model.ddm"), method == "pilco_features");
     const YAML::Node report = YAML::LoadFile(folder(method) + "/trial_002/pilco.yaml");
     EXPECT_EQ(report["points"].as<int>(), 3 * (testing::kToySteps - 1)) << method;
@@ -124,7 +125,7 @@ TEST_F(PilcoMethodTest, ARunThatIsResumedGoesOnWithItsPolicyAndEndsLikeOneThatIs
       EXPECT_EQ(textOf(whole + "/" + name), textOf(parts + "/" + name)) << method << " " << name;
       EXPECT_FALSE(textOf(whole + "/" + name).empty()) << name;
     }
-    // The policy acts, and not a training that was repeated meanwhile.
+    // resume() uses the policy of the file, and does not repeat the training.
     const std::string memory = parts + "/trial_002/pilco.yaml";
     YAML::Node changed = YAML::LoadFile(memory);
     PilcoMemory other = readMemory(memory);
@@ -149,7 +150,7 @@ TEST_F(PilcoMethodTest, APolicyGoesOnFromTheLastOneWhereTheCoordinatesStay) {
   const PilcoMemory last = readMemory(file);
   EXPECT_EQ(last.policy.size(), 3 + 4 * 3 + 4);
   EXPECT_EQ(last.gps.inducing.cols(), 40);
-  // Another policy to go on from, and the training of trial 2 comes to another one.
+  // With another initial policy, the training of trial 2 has another result.
   PilcoMemory other = last;
   other.policy *= 1.1;
   YAML::Node changed(YAML::NodeType::Map);
@@ -207,15 +208,18 @@ TEST_F(PilcoMethodTest, WhatIsPredictedIsWhatHappensAndItIsBetterThanTheFirstPol
   ASSERT_EQ(predicted.size(), 14u);
   double cost = 0.0;
   for (size_t row = 1; row < predicted.size(); ++row) {
-    const double angle = numberAt(predicted[row], 4);  // step,time_s,rate and its std, angle
+    // the columns are step, time_s, rate and its std, angle
+    const double angle = numberAt(predicted[row], 4);
     EXPECT_NEAR(angle, numberAt(actual[row], 2), 0.35) << "step " << row - 1;
     if (row > 1) cost += numberAt(predicted[row], 6);
   }
   EXPECT_NEAR(cost, report["cost_after"].as<double>(), 1e-6);
-  EXPECT_GT(std::abs(numberAt(predicted.back(), 4)), 1.5);  // it has moved towards the goal
+  // the pendulum has moved towards the goal
+  EXPECT_GT(std::abs(numberAt(predicted.back(), 4)), 1.5);
 }
 
-/// Sees noise, and wants length-scales whose inverse squares are no numbers: no cost is finite.
+/// An observation of random numbers. The inverse squares of its length-scales are infinite, so that
+/// no cost is finite.
 class PointlessObservation : public Observation {
  public:
   std::vector<std::string> names() const override { return {"z_1"}; }
@@ -246,7 +250,7 @@ TEST_F(PilcoMethodTest, GoesOnWithAFirstPolicyWhereNoCostIsFinite) {
   ASSERT_NE(policy, nullptr);
   policy->startTrial({7, 0, true});
   policy->observe({});
-  const Answer answer = policy->answer();  // none of its torques is finite
+  const Answer answer = policy->answer();  // no torque of the policy is finite
   EXPECT_EQ(answer.torque[0], 0.0);
   EXPECT_FALSE(answer.plan);
 }

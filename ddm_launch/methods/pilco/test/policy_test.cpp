@@ -1,4 +1,4 @@
-// Tests of the policies: values, samples, derivatives down to the parameters, refusals.
+// Tests of the policies: values, samples, derivatives with respect to inputs and parameters.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pilco/policy.h"
 
@@ -26,7 +26,7 @@ RbfPolicy randomRbfPolicy(int dim, int controls, int centres, std::mt19937_64& r
   return policy;
 }
 
-/// In the input and in the parameters.
+/// Checks the derivatives with respect to the input and the parameters.
 template <class Policy>
 void expectAdjointsMatch(Policy* policy, const Gaussian& input, std::mt19937_64& random) {
   EXPECT_TRUE(adjointMatches([&](const Gaussian& at) { return policy->predict(at); },
@@ -93,7 +93,8 @@ TEST(Squashing, HasTheMomentsOfSamples) {
   EXPECT_TRUE(momentsMatchSamples(squashing.predict(input), input, value, random));
 }
 
-/// Before squashing about 9 between its centres: beyond five turning points of the wave.
+/// A policy whose output before squashing is about 9 between its centres, i.e. beyond five turning
+/// points of the wave.
 RbfPolicy saturatedPolicy() {
   Eigen::MatrixXd centres(2, 6);
   centres << -0.8, 0.8, -0.8, 0.8, -0.8, 0.8,  //

@@ -1,4 +1,4 @@
-// Small random problems for the tests, and what must hold for moments and their adjoints.
+// Small random problems, and comparisons of moments and adjoints with samples and differences.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -24,15 +24,15 @@ inline Eigen::MatrixXd normalMatrix(int rows, int cols, double scale, std::mt199
   return Eigen::MatrixXd::NullaryExpr(rows, cols, [&]() { return normal(random); });
 }
 
-/// N(m, s) with standard deviations of about `scale` and correlations.
-/// @param rank  of s
+/// A random N(m, s) with correlated entries and standard deviations of about `scale`.
+/// @param rank  rank of s
 inline Gaussian randomGaussian(int dim, int rank, double scale, std::mt19937_64& random) {
   const Eigen::MatrixXd root = normalMatrix(dim, rank, scale / std::sqrt(rank + 1e-9), random);
   return Gaussian{normalMatrix(dim, 1, 0.5, random), root * root.transpose()};
 }
 
-/// A GP on random data, length-scales about 1, noise standard deviation 0.1.
-/// @param uncertain  whether it knows its model uncertainty
+/// A GP on random data with length-scales about 1 and noise standard deviation 0.1.
+/// @param uncertain  whether the model contains its uncertainty
 inline GpModel randomGp(int dim, int outputs, int n, bool uncertain, std::mt19937_64& random) {
   GpModel model;
   model.inputs = normalMatrix(dim, n, 1.0, random);
@@ -52,7 +52,8 @@ inline GpModel randomGp(int dim, int outputs, int n, bool uncertain, std::mt1993
   return model;
 }
 
-/// y_a ~ N(k_a(x)^T beta_a, sf_a^2 - k_a(x)^T A_a^-1 k_a(x)); without `inverse` the mean alone.
+/// Draws y_a ~ N(k_a(x)^T beta_a, sf_a^2 - k_a(x)^T A_a^-1 k_a(x)). Without `inverse`, returns the
+/// mean.
 class GpSampler {
  public:
   GpSampler(GpModel model, std::mt19937_64* random) : model_(std::move(model)), random_(random) {
@@ -86,14 +87,14 @@ class GpSampler {
 /// Draws y for a given x.
 using Sampler = std::function<Eigen::VectorXd(const Eigen::VectorXd& x)>;
 
-/// Symmetric square root: also for an s that is singular.
+/// Symmetric square root, also of a singular s.
 inline Eigen::MatrixXd squareRoot(const Eigen::MatrixXd& s) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(s);
   return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() *
          eigen.eigenvectors().transpose();
 }
 
-/// Sample means of several quantities against their predictions, each within four standard errors.
+/// Compares predictions of several quantities with sample means, within four standard errors.
 /// @param draw  draws all quantities once
 inline ::testing::AssertionResult meansMatchSamples(const Eigen::ArrayXd& predicted,
                                                     const std::function<Eigen::ArrayXd()>& draw) {
@@ -111,7 +112,7 @@ inline ::testing::AssertionResult meansMatchSamples(const Eigen::ArrayXd& predic
   return ::testing::AssertionFailure() << "off by standard errors: " << errors.transpose();
 }
 
-/// M, S and cov(x, y) = s V, one after the other.
+/// Concatenates M, S and cov(x, y) = s V.
 inline Eigen::ArrayXd stacked(const Eigen::VectorXd& mean, const Eigen::MatrixXd& covariance,
                               const Eigen::MatrixXd& cross) {
   Eigen::ArrayXd out(mean.size() + covariance.size() + cross.size());
@@ -120,7 +121,7 @@ inline Eigen::ArrayXd stacked(const Eigen::VectorXd& mean, const Eigen::MatrixXd
   return out;
 }
 
-/// Predicted moments against samples.
+/// Compares predicted moments with samples.
 inline ::testing::AssertionResult momentsMatchSamples(const Moments& predicted,
                                                       const Gaussian& input, const Sampler& sample,
                                                       std::mt19937_64& random) {
@@ -145,15 +146,15 @@ inline double innerProduct(const Moments& a, const Moments& b) {
          a.gain.cwiseProduct(b.gain).sum();
 }
 
-/// Weights of all entries of M, S and V. Those of S are not symmetric: an adjoint must not rely on
-/// that.
+/// Random weights of all entries of M, S and V. The weights of S are not symmetric, because an
+/// adjoint must not rely on symmetry.
 inline Moments randomMoments(int input_dim, int output_dim, std::mt19937_64& random) {
   return Moments{normalMatrix(output_dim, 1, 1.0, random),
                  normalMatrix(output_dim, output_dim, 1.0, random),
                  normalMatrix(input_dim, output_dim, 1.0, random)};
 }
 
-/// m and all entries of s one after the other; s is read as the symmetric part.
+/// Concatenates m and all entries of s. The inverse function uses the symmetric part of s.
 inline Eigen::VectorXd flatten(const Gaussian& gaussian) {
   Eigen::VectorXd flat(gaussian.mean.size() + gaussian.covariance.size());
   flat << gaussian.mean,
@@ -166,7 +167,7 @@ inline Gaussian unflatten(const Eigen::VectorXd& flat, int dim) {
                   symmetricPart(Eigen::Map<const Eigen::MatrixXd>(flat.data() + dim, dim, dim))};
 }
 
-/// Checks dJ/dm and dJ/ds for a random linear J of all outputs.
+/// Checks dJ/dm and dJ/ds for a random linear function J of all outputs.
 inline ::testing::AssertionResult adjointMatches(const MomentsMap& map,
                                                  const MomentsAdjoint& adjoint,
                                                  const Gaussian& input, std::mt19937_64& random) {

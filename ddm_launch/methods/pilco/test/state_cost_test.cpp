@@ -42,7 +42,8 @@ TEST(Augmentation, StaysFiniteForAnAngleAboutWhichNothingIsKnown) {
   const Moments output = Augmentation(2, {0}, {0, 1}).predict(input);
   ASSERT_TRUE(output.mean.allFinite() && output.covariance.allFinite() && output.gain.allFinite());
   EXPECT_NEAR(output.covariance(1, 1), 0.5, 1e-12);
-  EXPECT_NEAR(output.covariance(1, 3), 0.5 * std::cos(0.7), 1e-12);  // fully correlated
+  // the two angles are fully correlated
+  EXPECT_NEAR(output.covariance(1, 3), 0.5 * std::cos(0.7), 1e-12);
 }
 
 TEST(Augmentation, AdjointMatchesDifferences) {
@@ -56,7 +57,8 @@ TEST(Augmentation, AdjointMatchesDifferences) {
 }
 
 TEST(SineCovariance, IsExactForVariancesNearTheSmallestNumbers) {
-  // cov(sin a, sin b) -> c cos m_a cos m_b; e^c - 1 by subtraction would leave no digit of it.
+  // cov(sin a, sin b) is c cos m_a cos m_b for c -> 0. Computing e^c - 1 by subtraction would lose
+  // all digits.
   const double c = 1e-20;
   EXPECT_NEAR(sineCovariance(0.3, 0.8, c, c, c) / (c * std::cos(0.3) * std::cos(0.8)), 1.0, 1e-14);
 }

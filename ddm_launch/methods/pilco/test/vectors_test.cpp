@@ -1,7 +1,7 @@
-// Compares all that PILCO computes with the reference values in the JSON file that DDM_PILCO_VECTORS names.
+// Compares PILCO with the reference values in the JSON file that DDM_PILCO_VECTORS names.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Each kind of cases in the file is a test; a case fails where a field is missing or disagrees.
+// Each kind of case in the file is a test. A case fails if a field is missing or differs.
 #include <ddm_model/minimise.h>
 #include <ddm_sim/pendulum.h>
 #include <gtest/gtest.h>
@@ -24,7 +24,8 @@
 namespace ddm::pilco {
 namespace {
 
-/// How far a computed quantity may be from that of the file: absolute, or in units of the field's largest entry.
+/// Largest difference between computed value and file: absolute, or in units of the largest entry
+/// of the field.
 struct Tolerance {
   double limit;
   bool relative;
@@ -41,14 +42,14 @@ void expectNear(const std::string& field, const Eigen::MatrixXd& expected,
   const double largest = expected.cwiseAbs().maxCoeff();
   const double scale = tolerance.relative && largest > 0.0 ? largest : 1.0;
   for (Eigen::Index i = 0; i < computed.size(); ++i) {
-    // Written so that NaN fails.
+    // The condition is written such that NaN fails.
     EXPECT_TRUE(std::abs(computed(i) - expected(i)) <= tolerance.limit * scale)
         << field << ", entry " << i << " by columns: the file has " << expected(i) << ", computed "
         << computed(i) << ", tolerance " << tolerance.limit * scale;
   }
 }
 
-/// One case of the file. Its functions throw where a field is missing or is no number.
+/// One case of the file. All functions throw if a field is missing or not a number.
 class Case {
  public:
   explicit Case(const YAML::Node& node) : node_(node) {}
@@ -58,7 +59,7 @@ class Case {
   double number(const std::string& field) const { return at(field).as<double>(); }
   Case group(const std::string& field) const { return Case(at(field)); }
 
-  /// A number, a column as a list of numbers, or a list of rows.
+  /// Reads a number, a column as a list of numbers, or a matrix as a list of rows.
   Eigen::MatrixXd matrix(const std::string& field) const {
     const YAML::Node node = at(field);
     if (node.IsScalar()) return Eigen::MatrixXd::Constant(1, 1, node.as<double>());
@@ -100,7 +101,8 @@ class Case {
   YAML::Node node_;
 };
 
-/// What a file calls mean, covariance and gain of an output, in this order.
+/// Names of mean, covariance and gain of an output in the file, in this order, with their
+/// tolerances.
 using MomentFields = std::vector<std::pair<std::string, Tolerance>>;
 const MomentFields kTrigonometric = {{"M", kClosedForm}, {"V", kClosedForm}, {"C", kClosedForm}};
 const MomentFields kPolicy = {{"M", kState}, {"S", kState}, {"C", kState}};
@@ -112,10 +114,11 @@ void compareMoments(const Case& reference, const MomentFields& fields, const Mom
   reference.compare(fields[2].first, computed.gain, fields[2].second);
 }
 
-/// Compares derivatives by mean m and covariance of the input, where the file has them. They are vectorised by columns. Of
-/// columns (p, q) and (q, p) only the sum has a meaning, because a covariance is symmetric.
-/// @param covariance  what the file calls the covariance of the input
-/// @param backward    dJ/d outputs -> dJ/d input
+/// Compares derivatives with respect to mean m and covariance of the input, if the file has them.
+/// They are vectorised by columns. Only the sum of the columns (p, q) and (q, p) is defined,
+/// because a covariance is symmetric.
+/// @param covariance  name of the covariance of the input in the file
+/// @param backward    maps dJ/d(outputs) to dJ/d(input)
 void compareJacobians(const Case& reference, const MomentFields& fields,
                       const std::string& covariance, int dim, int output_dim,
                       const std::function<Gaussian(const Moments&)>& backward) {
@@ -151,7 +154,8 @@ void compareJacobians(const Case& reference, const MomentFields& fields,
   }
 }
 
-/// Rows: log length-scales, log signal std, log noise std. One column for each output.
+/// The rows are log length-scales, log signal std and log noise std; there is one column per
+/// output.
 Hyperparameters hyperparameters(const Case& reference, const std::string& field) {
   const Eigen::MatrixXd values = reference.matrix(field);
   const Eigen::Index dim = values.rows() - 2;
@@ -196,7 +200,7 @@ void checkSparseGpPredict(const Case& reference) {
                                reference.matrix("Y"), hyperparameters(reference, "loghyp"))));
 }
 
-/// What training minimises for one output.
+/// The objective of the training for one output.
 double objective(const Eigen::MatrixXd& inputs, const Eigen::VectorXd& targets,
                  const Eigen::VectorXd& theta, Eigen::VectorXd* gradient) {
   const double plain = negativeLogLikelihood(inputs, targets, theta, gradient);
@@ -219,7 +223,7 @@ void checkLikelihood(const Case& reference) {
   reference.compare("dnlml_curb", gradient, relative(1e-7));
 }
 
-/// Compares the field loghyp_init, and trains from there.
+/// Compares the field loghyp_init with the initial hyper-parameters, and trains from there.
 GpFit trainFromStart(const Case& reference) {
   const Eigen::MatrixXd inputs = reference.matrix("X").transpose(), targets = reference.matrix("Y");
   const Hyperparameters start = hyperparameters(reference, "loghyp_init");
@@ -250,14 +254,14 @@ void checkTraining(const Case& reference) {
   reference.compare("nlml_curb", trained, absolute(1e-4));
 }
 
-/// Picks entries of a vector.  [picked.size() x size]
+/// Matrix that selects entries of a vector.                              [picked.size() x size]
 Eigen::MatrixXd picking(const std::vector<int>& picked, Eigen::Index size) {
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(picked.size(), size);
   for (std::size_t i = 0; i < picked.size(); ++i) out(i, picked[i]) = 1.0;
   return out;
 }
 
-/// The field index1, from 0.
+/// The field index1, converted to indices from 0.
 std::vector<int> readIndices(const Case& reference, Eigen::Index dim) {
   std::vector<int> out;
   const Eigen::VectorXd entries = reference.vector("index1");
@@ -268,12 +272,13 @@ std::vector<int> readIndices(const Case& reference, Eigen::Index dim) {
   return out;
 }
 
-/// y = A x for the linear map A.
+/// Moments of y = A x for a linear map A.
 Moments mapped(const Moments& x, const Eigen::MatrixXd& A) {
   return {A * x.mean, A * x.covariance * A.transpose(), x.gain * A.transpose()};
 }
 
-/// Sines and cosines of the entries index1, times the scales e; only the sines for the kind gsin.
+/// Checks sines and cosines of the entries index1, times the scales e. The kind gsin has only
+/// sines.
 void checkTrigonometric(const Case& reference, bool only_sines) {
   const Gaussian input = reference.gaussian("m", "v");
   const int dim = static_cast<int>(input.mean.size());
@@ -298,7 +303,8 @@ void checkTrigonometric(const Case& reference, bool only_sines) {
 void checkSquashing(const Case& reference) {
   const Gaussian input = reference.gaussian("m", "v");
   const int dim = static_cast<int>(input.mean.size());
-  const Eigen::MatrixXd pick = picking(readIndices(reference, dim), dim);  // what is squashed
+  // selects the entries to squash
+  const Eigen::MatrixXd pick = picking(readIndices(reference, dim), dim);
   const Squashing squashing(reference.vector("maxU"));
   const Gaussian chosen = {pick * input.mean, pick * input.covariance * pick.transpose()};
   Moments computed = squashing.predict(chosen);
@@ -312,7 +318,7 @@ void checkSquashing(const Case& reference) {
   });
 }
 
-/// Parameters of an RBF policy from their parts.
+/// Reads the parameters of an RBF policy from their parts.
 Eigen::VectorXd readParameters(const Case& reference) {
   return RbfPolicy::packParameters(reference.matrix("log_ls"),
                                    reference.matrix("centres").transpose(),
@@ -331,7 +337,7 @@ RbfPolicy readRbfPolicy(const Case& reference) {
 void checkPolicy(const Case& reference) {
   const Gaussian input = reference.gaussian("m", "s");
   const Eigen::VectorXd max_control = reference.vector("maxU");
-  if (reference.text("kind") == "conlin") {  // no policy of the library, but easily squashed
+  if (reference.text("kind") == "conlin") {  // linear policies are not in the library
     const Eigen::MatrixXd w = reference.matrix("w");
     const Moments plain = {w * input.mean + reference.vector("b"),
                            w * input.covariance * w.transpose(), w.transpose()};
@@ -345,7 +351,8 @@ void checkPolicy(const Case& reference) {
   compareMoments(reference, kSquashed, policy.predict(input));
   if (!reference.has("dM_sq_dlog_ls")) return;
   const Eigen::Index dim = policy.inputDim(), count = reference.matrix("centres").rows();
-  for (const std::string name : {"dM_sq", "dS_sq"}) {  // of one control
+  // derivatives by parameters are given for one control input
+  for (const std::string name : {"dM_sq", "dS_sq"}) {
     Moments seed = constantMoments(policy.inputDim(), 1);
     (name == "dM_sq" ? seed.mean[0] : seed.covariance(0, 0)) = 1.0;
     Eigen::VectorXd gradient = Eigen::VectorXd::Zero(policy.parameters().size());
@@ -377,7 +384,7 @@ void checkPendulumCost(const Case& reference) {
   compareCost(reference, pendulumCost(reference.number("length"), reference.number("width")));
 }
 
-/// What the two published versions of the pendulum scenario have fixed.
+/// Constants of the two published versions of the pendulum scenario.
 struct Scenario {
   double gravity;           ///< [m / s^2]
   double friction;          ///< [N m s / rad]
@@ -400,7 +407,7 @@ void checkSimulation(const Case& reference) {
   options.friction = scenario.friction;
   options.dt = scenario.time_step;
   options.max_torque = {1000.0};
-  Pendulum pendulum(options);  // its state is (angle, rate), in the file it is (rate, angle)
+  Pendulum pendulum(options);  // its state is (angle, rate); the file has (rate, angle)
   pendulum.setState(reference.vector("x0").reverse());
   pendulum.step(reference.vector("u"));
   reference.compare("x1", pendulum.state().reverse(), kState);
@@ -438,7 +445,7 @@ LongTermCost readLongTermCost(const Case& reference, SquashedPolicy* policy) {
                       static_cast<int>(reference.number("H")));
 }
 
-/// Means and covariances for t = 0 ... H.
+/// Compares means and covariances for t = 0 ... H.
 void compareStates(const Case& reference, const std::vector<Gaussian>& states,
                    Tolerance tolerance) {
   Eigen::MatrixXd means(states.size(), 2), covariances(states.size(), 3);
@@ -453,7 +460,7 @@ void compareStates(const Case& reference, const std::vector<Gaussian>& states,
   reference.compare("cov_dphi_phi_0_to_H", covariances.col(2), tolerance);
 }
 
-/// dJ/d parameters by central differences of fourth order with this step.
+/// dJ/d(parameters) by central differences of fourth order.
 Eigen::VectorXd differences(LongTermCost* cost, const Eigen::VectorXd& parameters, double step) {
   Eigen::VectorXd gradient(parameters.size());
   for (Eigen::Index i = 0; i < parameters.size(); ++i) {
@@ -479,18 +486,20 @@ void checkValue(const Case& reference) {
                     Eigen::Map<const Eigen::VectorXd>(cost.costs().data(), cost.costs().size()),
                     kState);
   compareStates(reference, cost.states(), kState);
-  // The differences of the file have truncation errors of their own, beyond the tolerance where J bends much. So like is
-  // compared with like, and the exact gradient with finer differences.
+  // The differences of the file have truncation errors, which exceed the tolerance where J has a
+  // large curvature. Therefore they are compared with differences of the same step, and the exact
+  // gradient is compared with finer differences.
   expectNear("grad_finite_difference", readParameters(reference.group("grad_finite_difference")),
              differences(&cost, parameters, 1e-3), kGradient);
   expectNear("finer differences", differences(&cost, parameters, 1e-4), exact, kGradient);
-  // The published program ignores the noise in its chain rule, which makes its gradient wrong by up to 3e-4.
+  // The published program neglects the measurement noise in its chain rule, so that its gradient is
+  // wrong by up to 3e-4.
   const bool published_is_exact = !readScenario(reference).noisy_policy_input;
   expectNear("grad_as_implemented", readParameters(reference.group("grad_as_implemented")), exact,
              published_is_exact ? kGradient : relative(1e-3));
 }
 
-/// A model and a policy of the authors' own run.
+/// Checks a model and a policy of the authors' own experiment.
 void checkAuthors(const Case& reference) {
   constexpr Tolerance kTolerance = relative(1e-5);
   const GpFit fit = trainFromStart(reference);
@@ -511,7 +520,7 @@ void checkAuthors(const Case& reference) {
   reference.compare("cost_std_per_step_0_to_H", costs.col(1), kTolerance);
 }
 
-/// By the names that the kinds have in a file.
+/// The checks by their name in the file.
 const std::map<std::string, std::function<void(const Case&)>> kKinds = {
     {"gp_predict", checkGpPredict},
     {"gp_predict_fitc", checkSparseGpPredict},
@@ -528,7 +537,7 @@ const std::map<std::string, std::function<void(const Case&)>> kKinds = {
     {"value", checkValue},
     {"authors", checkAuthors}};
 
-/// Skipped where the environment names no file. A file that is missing or damaged is a failure.
+/// Skipped if the environment names no file. A missing or damaged file is a failure.
 class PilcoVectors : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -541,7 +550,7 @@ class PilcoVectors : public ::testing::Test {
     std::stringstream text;
     text << file.rdbuf();
     std::string json = text.str();
-    std::replace(json.begin(), json.end(), '\t', ' ');  // JSON is YAML, but for tabs
+    std::replace(json.begin(), json.end(), '\t', ' ');  // JSON is a subset of YAML except for tabs
     ASSERT_NO_THROW(root_ = YAML::Load(json)) << path;
     ASSERT_TRUE(root_.IsMap()) << path << " must hold a JSON object with kinds of cases";
   }

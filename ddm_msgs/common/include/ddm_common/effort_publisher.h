@@ -1,4 +1,4 @@
-// Torques for the effort controllers of ros_control.
+// Publishes torques to the effort controllers of ros_control.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -13,8 +13,8 @@
 
 namespace ddm {
 
-/// Sends each torque to every motor: on `effort_command` as a std_msgs/Float64 where there is one
-/// motor, on `group_effort_command` as a std_msgs/Float64MultiArray where there are several.
+/// Publishes the torques of all motors: as std_msgs/Float64 on `effort_command` for one motor, as
+/// std_msgs/Float64MultiArray on `group_effort_command` for several motors.
 class EffortPublisher {
  public:
   EffortPublisher(ros::NodeHandle nh, int num_motors)
@@ -39,7 +39,7 @@ class EffortPublisher {
   int numSubscribers() const { return static_cast<int>(publisher_.getNumSubscribers()); }
   std::string topic() const { return publisher_.getTopic(); }
 
-  /// Zero to every motor.
+  /// Publishes zero torque for every motor.
   void publishZero() { publish(std::vector<double>(static_cast<std::size_t>(num_motors_), 0.0)); }
 
  private:

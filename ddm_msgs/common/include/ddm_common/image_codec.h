@@ -1,4 +1,4 @@
-// Images: as camera messages, as the grey values of the paper's y, as pictures in files.
+// Converts camera messages to the grey values of the paper's y, and reads and writes image files.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -12,57 +12,61 @@
 
 namespace ddm {
 
-/// The pixels of an image that count; a width or height of 0 reaches to its edge.
+/// The part of an image that is used. A width or height of 0 reaches to the edge of the image.
 struct ImageCrop {
-  int x = 0;       ///< first column
-  int y = 0;       ///< first row
-  int width = 0;   ///< columns
-  int height = 0;  ///< rows
+  int x = 0;       ///< first column [pixels]
+  int y = 0;       ///< first row [pixels]
+  int width = 0;   ///< number of columns [pixels]
+  int height = 0;  ///< number of rows [pixels]
 };
 
-/// Grey values of a camera image at the size that the model works with.
+/// Converts a camera image to grey values of the size that the model uses.
 ///
 ///   y_i = k_i / 255,   k = decodeImage(image, size),   i row by row from the top left corner
 ///
-/// A mono8 (or 8UC1) image of size x size without padding is returned byte for byte. Any other is
-/// turned into grey first, then cropped, then cut to its central square if it is not square (an odd
-/// column or row is left out on the right or at the bottom), then resized by area averaging
+/// A mono8 (or 8UC1) image of size x size without padding is returned byte for byte. Every other
+/// image is converted to grey, then cropped, then cut to its central square (an odd column is
+/// removed on the right, an odd row at the bottom), and then resized by area averaging
 /// (cv::INTER_AREA).
 ///
-/// Encodings, in small or capital letters: mono8, mono16, rgb8, bgr8, rgba8, bgra8 and their 16 bit
-/// forms; bayer_*8, bayer_*16; YUV 4:2:2, whose luma is used as it is sent, under the names yuv422,
-/// uyvy, uyvy422, yuv422_uyvy and yuyv, yuy2, yuyv422, yuv422_yuy2; 8UC1/3/4 and 16UC1/3/4 (three
-/// channels in OpenCV's order blue, green, red); 32FC1 and 64FC1 with grey values in [0, 1]. 16 bit
-/// is divided by 257, so that 65535 becomes 255. Floats become k = round(255 grey). Pixels may be
-/// big-endian.
+/// Encodings, in lower or upper case: mono8, mono16, rgb8, bgr8, rgba8, bgra8 and their 16 bit
+/// forms; bayer_*8, bayer_*16; YUV 4:2:2 under the names yuv422, uyvy, uyvy422, yuv422_uyvy and
+/// yuyv, yuy2, yuyv422, yuv422_yuy2; 8UC1/3/4 and 16UC1/3/4 (three channels in OpenCV's order blue,
+/// green, red); 32FC1 and 64FC1 with grey values in [0, 1]. The luma of YUV images is used without
+/// conversion. 16 bit values are divided by 257, so that 65535 becomes 255. Floats become
+/// k = round(255 grey). Pixels may be big-endian.
 ///
-/// @param image  as it came over the wire; nothing in it is trusted
+/// @param image  untrusted message; all of its fields are checked
 /// @param size   width and height of the result                                 [1 ... 16384]
-/// @param crop   what of it is looked at                                        [all of it]
+/// @param crop   part of the image that is used; the whole image by default
 /// @return       grey values k                                                  [size * size]
 /// @throws std::invalid_argument if the size is out of range, the image is empty or larger than
-///         16384 x 16384, its encoding is not one of the above, its step or data do not fit its
-///         size, a float is outside [0, 1] or NaN, or the crop reaches beyond the image
+///         16384 x 16384, the encoding is not listed above, step or data do not match the image
+///         size, a float is outside [0, 1] or NaN, or the crop extends beyond the image
 std::vector<std::uint8_t> decodeImage(const sensor_msgs::Image& image, int size,
                                       const ImageCrop& crop = ImageCrop());
 
-/// An image from its JPEG, PNG or other bytes, in colour: bgr8, or bgr16 if they have 16 bits.
-/// @throws std::invalid_argument if OpenCV cannot read them, or a JPEG ends early
+/// Decompresses a JPEG, PNG or other image file in colour: bgr8, or bgr16 if it has 16 bits per
+/// channel.
+/// @throws std::invalid_argument if OpenCV cannot decode the data, or a JPEG is truncated
 sensor_msgs::Image unpacked(const sensor_msgs::CompressedImage& image);
 
-/// The inverse of decodeImage(): a mono8 image without padding. decodeImage(encodeImage(k, size, ...), size) == k.
+/// Makes a mono8 image without padding, the inverse of decodeImage():
+///
+///   decodeImage(encodeImage(k, size, ...), size) == k
 ///
 /// @param grey  grey values k, row by row from the top left corner              [size * size]
 /// @param size  width and height                                                [1 ... 16384]
-/// @throws std::invalid_argument if the size is out of range or `grey` has another length
+/// @throws std::invalid_argument if the size is out of range or `grey` has the wrong length
 sensor_msgs::Image encodeImage(const std::vector<std::uint8_t>& grey, int size,
                                const ros::Time& stamp, const std::string& frame_id);
 
-/// The picture in grey, as large as it is; any format that OpenCV reads.
-/// @throws std::invalid_argument with the path if it is none
+/// Reads an image file as grey values at its own size; any format that OpenCV reads.
+/// @throws std::invalid_argument with the path if the file is not an image
 sensor_msgs::Image readPicture(const std::string& path);
 
-/// @param image  mono8 or rgb8; the format is that of the path's suffix
+/// Writes an image file; the suffix of the path determines the format.
+/// @param image  mono8 or rgb8
 /// @throws std::runtime_error with the path
 void writePicture(const std::string& path, const sensor_msgs::Image& image);
 

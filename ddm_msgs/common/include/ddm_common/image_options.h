@@ -9,13 +9,13 @@ namespace ddm {
 
 /// Block `image`.
 struct ImageOptions {
-  int size = 51;  ///< images have size x size pixels, D = size^2
+  int size = 51;  ///< width and height of all images [pixels], D = size^2
 
   template <class Visitor>
   void visit(Visitor& visitor) {
     visitor("size", size);
   }
-  /// Everything wrong with these values, in words a user can act on. Empty means valid.
+  /// Describes each invalid value and the rule that it breaks. Empty if all values are valid.
   std::vector<std::string> problems() const {
     if (size >= 4 && size <= 1024) return {};
     return {"image/size must lie in [4, 1024], got " + std::to_string(size)};

@@ -1,4 +1,4 @@
-// Log lines of callbacks that must not wait for a terminal.
+// Logs from callbacks that a stopped terminal must not block.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -9,17 +9,17 @@
 
 namespace ddm {
 
-/// Logs in a thread of its own. rosconsole writes in the thread that logs, one thread at a time, so
-/// a terminal that is stopped (Ctrl-S, a pager, a slow connection) holds up whoever logs.
+/// Logs in a thread of its own. rosconsole writes in the calling thread and holds a lock, so a
+/// terminal that is stopped (Ctrl-S, a pager, a slow connection) blocks every thread that logs.
 class LogThread {
  public:
   LogThread();
-  /// Waits a second at most for lines that are not written yet.
+  /// Waits at most one second for lines that are not written yet.
   ~LogThread();
   LogThread(const LogThread&) = delete;
   LogThread& operator=(const LogThread&) = delete;
 
-  /// Return at once. Where 1000 lines wait, more are dropped.
+  /// These functions return at once. If 1000 lines are waiting, further lines are dropped.
   void info(const std::string& text) { add(ros::console::levels::Info, text); }
   void warn(const std::string& text) { add(ros::console::levels::Warn, text); }
   void error(const std::string& text) { add(ros::console::levels::Error, text); }
@@ -29,7 +29,7 @@ class LogThread {
 
   void add(ros::console::levels::Level level, const std::string& text);
 
-  std::shared_ptr<Lines> lines_;  // shared with the thread, which may outlive this
+  std::shared_ptr<Lines> lines_;  // shared with the thread, which may outlive this object
 };
 
 }  // namespace ddm

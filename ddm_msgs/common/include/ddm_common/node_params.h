@@ -1,4 +1,4 @@
-// Parameters of a ROS node as a YAML tree, so that nodes and tools share one reader.
+// Converts the parameters of a ROS node to a YAML tree, so that nodes and tools share one reader.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -10,24 +10,25 @@
 
 namespace ddm {
 
-/// One value of the parameter server as YAML: exact doubles, lists, and structs as maps. A text
-/// stays a text; ParamReader still reads a number from it where a number is due, because rosparam
-/// takes `1e-4` in a YAML file for a text.
+/// Converts a value of the parameter server to YAML: doubles exactly, lists, and structs as maps. A
+/// string remains a string. ParamReader still parses a string as a number if the key is a number,
+/// because rosparam reads `1e-4` in a YAML file as a string.
 ///
-/// @param value  by value: its accessors are not const
-/// @param name   of the parameter, for messages
+/// @param value  passed by value because its accessors are not const
+/// @param name   name of the parameter, for messages
 /// @throws std::invalid_argument if the value is a date, binary data or unset
 YAML::Node toYaml(XmlRpc::XmlRpcValue value, const std::string& name);
 
-/// The parameters of a node, blocks by name: those of the text parameter `configuration` in the
-/// node's namespace, which all nodes of a launch share, and over them the node's private ones.
+/// Returns the parameters of a node as blocks by name: the text parameter `configuration` in the
+/// node's namespace, which all nodes of a launch file share, overlaid with the private parameters
+/// of the node.
 ///
 ///   ParamReader reader(nodeParams(pnh), pnh.getNamespace());
 ///
 /// @param pnh  private node handle, ros::NodeHandle("~")
-/// @return an empty map if there are none
-/// @throws std::invalid_argument if `configuration` is not a text of blocks, the node's own name
-///         holds a value instead of parameters, or a value cannot be written as YAML
+/// @return blocks by name; an empty map if there are no parameters
+/// @throws std::invalid_argument if `configuration` is not a text of blocks, the node's private
+///         namespace holds a value instead of parameters, or a value cannot be written as YAML
 YAML::Node nodeParams(const ros::NodeHandle& pnh);
 
 }  // namespace ddm

@@ -1,4 +1,4 @@
-// Notices that another node has died.
+// Detects that the process of another node has ended.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -7,11 +7,11 @@
 
 namespace ddm {
 
-/// Keeps a connection to the process of a node, which breaks as soon as the process ends.
+/// Keeps a connection to the process of a node. The connection breaks as soon as the process ends.
 ///
-/// Neither ROS nor its master notices a kill -9: ros::Subscriber::getNumPublishers() goes on to count
-/// the connection, which roscpp tries to make again. A process that is stopped, or a cable that is
-/// pulled, is not noticed here either: limits in time are for those.
+/// Neither roscpp nor the ROS master detects a kill -9: roscpp tries to reconnect, and
+/// ros::Subscriber::getNumPublishers() still counts the connection. NodeWatch does not detect a
+/// stopped process or an unplugged cable; use time limits for these cases.
 class NodeWatch {
  public:
   NodeWatch();
@@ -19,12 +19,12 @@ class NodeWatch {
   NodeWatch(const NodeWatch&) = delete;
   NodeWatch& operator=(const NodeWatch&) = delete;
 
-  /// Something has come from this node, so it lives. The first time, its address is asked for.
-  /// Returns at once.
-  /// @param node  resolved name
+  /// Call this function when a message from a node arrives: the node is alive. The first call for a
+  /// node makes a thread look up its address. Returns at once.
+  /// @param node  resolved name of the node
   void hear(const std::string& node);
 
-  /// Whether the process of the node that was heard last has ended since.
+  /// Whether the process of the node in the last call of hear() has ended since that call.
   bool died() const;
 
  private:
@@ -32,7 +32,7 @@ class NodeWatch {
 
   static void watch(const std::shared_ptr<State>& state);
 
-  std::shared_ptr<State> state_;  // shared with the thread, which may outlive this
+  std::shared_ptr<State> state_;  // shared with the thread, which may outlive this object
 };
 
 }  // namespace ddm

@@ -1,4 +1,4 @@
-// Collects what is wrong with the values of a block, and finds the name that was meant.
+// Collects the invalid values of a block, and suggests the correct spelling of a name.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -13,7 +13,7 @@
 
 namespace ddm {
 
-// Written so that NaN fails; an infinite length or mass has no physics either.
+// NaN and infinity are refused: no length or mass is infinite.
 inline bool isPositive(double value) {
   return value > 0.0 && value <= std::numeric_limits<double>::max();
 }
@@ -21,7 +21,8 @@ inline bool isNotNegative(double value) {
   return value >= 0.0 && value <= std::numeric_limits<double>::max();
 }
 
-/// Number of characters to insert, delete or replace to turn one word into the other.
+/// Edit distance: number of characters to insert, delete or replace to turn one word into the
+/// other.
 inline std::size_t editDistance(const std::string& from, const std::string& to) {
   std::vector<std::size_t> row(to.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
@@ -37,7 +38,8 @@ inline std::size_t editDistance(const std::string& from, const std::string& to) 
   return row.back();
 }
 
-/// The known name that was meant by one that is not known; empty if none is nearer than `limit`.
+/// Returns the known name with the smallest edit distance to `name`; empty if no distance is below
+/// `limit`.
 template <class Names>
 std::string nearestName(const std::string& name, const Names& known, std::size_t limit) {
   std::string nearest;
@@ -55,7 +57,7 @@ class OptionChecks {
  public:
   explicit OptionChecks(std::string block) : block_(std::move(block)) {}
 
-  /// @param ok  to be written so that NaN makes it false
+  /// @param ok  condition; write it so that NaN makes it false
   template <class Value>
   void require(bool ok, const std::string& key, const std::string& rule, const Value& value) {
     if (ok) return;
@@ -76,7 +78,8 @@ class OptionChecks {
   void requirePositive(const std::string& key, double value) {
     require(isPositive(value), key, "be > 0 and finite", value);
   }
-  /// A time to wait [s]: roscpp's durations end at 68 years.
+  /// Requires a valid time limit [s]. The upper bound of one day lies far below the 68 years at
+  /// which roscpp's durations overflow.
   void requireTimeLimit(const std::string& key, double value) {
     require(value > 0.0 && value <= 86400.0, key, "lie in (0, 86400]", value);
   }
@@ -99,7 +102,8 @@ class OptionChecks {
   std::vector<std::string> problems_;
 };
 
-/// @throws std::invalid_argument with all of the problems, one a line, if there are any
+/// Requires that the list of problems is empty.
+/// @throws std::invalid_argument with all problems, one per line, if there are any
 inline void requireNone(const std::vector<std::string>& problems) {
   if (problems.empty()) return;
   std::string all;
@@ -107,7 +111,8 @@ inline void requireNone(const std::vector<std::string>& problems) {
   throw std::invalid_argument("invalid options:" + all);
 }
 
-/// `options` unchanged, so that the checks precede the first use of its values.
+/// Returns `options` unchanged. Use it in an initialiser list, so that the check comes before the
+/// first use of the values.
 /// @throws std::invalid_argument with all of its problems
 template <class Options>
 const Options& checked(const Options& options) {

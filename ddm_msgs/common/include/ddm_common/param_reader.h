@@ -1,4 +1,4 @@
-// Strict configuration reader: one options struct = one YAML block, every mistake reported at once.
+// Strict configuration reader: one YAML block per struct, all mistakes reported at once.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -22,7 +22,7 @@ YAML::Node toYaml(const Options& options) {
   return out;
 }
 
-/// Reads options structs from the blocks of a YAML tree and remembers everything that is wrong.
+/// Reads options structs from the blocks of a YAML tree and collects all problems.
 ///
 /// An options struct has defaults, a `template <class Visitor> void visit(Visitor& visitor)` that
 /// calls `visitor("key", member)` for each key, and `std::vector<std::string> problems() const`.
@@ -30,43 +30,46 @@ YAML::Node toYaml(const Options& options) {
 ///   ParamReader reader = ParamReader::fromFiles({"model.yaml", "preset.yaml"});
 ///   const auto model = reader.read<ModelOptions>("model");
 ///   const auto mpc = reader.read<MpcOptions>("mpc");
-///   reader.requireValid();  // not before all blocks are read: it reports them together
+///   reader.requireValid();  // call it last: it reports the problems of all blocks together
 ///
-/// A block of another program of DDM is left alone, so that each program can be given the same files.
-/// A block that no program knows is a mistake.
+/// Blocks of other DDM programs are ignored, so that all programs can use the same files. A block
+/// that no DDM program has is a mistake.
 class ParamReader {
  public:
-  /// @param root    blocks by name; nothing at all is an empty configuration
-  /// @param source  where it comes from, for messages; may be empty
+  /// @param root    blocks by name; a null node is an empty configuration
+  /// @param source  origin of the blocks, for messages; may be empty
   /// @throws std::invalid_argument if root is neither a map nor empty
   explicit ParamReader(const YAML::Node& root, std::string source = "");
 
-  /// Later files win, key by key inside a block; a list is replaced as a whole.
+  /// Reads and merges files: later files replace values of earlier files key by key. A list is
+  /// replaced as a whole.
   ///
   /// @throws std::runtime_error with the path if a file cannot be read
   /// @throws std::invalid_argument with path and line if a file is not valid YAML, is not a map of
   ///         blocks, has more than one document, or gives a block or a key twice
   static ParamReader fromFiles(const std::vector<std::string>& paths);
 
-  /// Accept a top-level name that belongs to others, like `image_transport`.
+  /// Accepts a top-level name that is not a block of DDM, such as `image_transport`.
   void ignore(const std::string& block) { ignored_.insert(block); }
 
-  /// Whether a block is given at all.
+  /// Whether the configuration contains the block.
   bool has(const std::string& block) const;
 
-  /// The values of a block, defaults where it is silent or wrong. Never throws for a bad value:
-  /// unknown keys, wrong types and options.problems() are kept for requireValid().
+  /// Reads a block. Keys that are missing or invalid keep their default values. Never throws for an
+  /// invalid value: unknown keys, wrong types and options.problems() are collected for
+  /// requireValid().
   template <class Options>
   Options read(const std::string& block);
 
-  /// Everything found wrong so far, unknown blocks included. Empty means valid.
+  /// All problems found so far, including unknown blocks. Empty if the configuration is valid.
   std::vector<std::string> problems() const;
 
   /// @throws std::invalid_argument with all problems(), one per line
   void requireValid() const;
 
  private:
-  /// Notes that the block is known. Returns its keys, an empty map if it is not given.
+  /// Marks the block as known and returns its keys; an empty map if the configuration does not
+  /// contain the block.
   YAML::Node openBlock(const std::string& block);
   void reportUnknownKeys(const std::string& block, const YAML::Node& values,
                          const std::vector<std::string>& known_keys);
@@ -83,7 +86,8 @@ class ParamReader {
 
 template <class Options>
 Options ParamReader::read(const std::string& block) {
-  const YAML::Node values = openBlock(block);  // const: looking up a missing key must not add it
+  // The node is const because looking up a missing key must not add it.
+  const YAML::Node values = openBlock(block);
   std::vector<std::string> known_keys;
   auto take = [&](const std::string& key, auto& value) {
     known_keys.push_back(key);

@@ -1,4 +1,4 @@
-// Single values of a configuration: strict parsing, exact printing.
+// Conversion of single configuration values: strict parsing and exact printing.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -10,14 +10,14 @@
 
 namespace ddm {
 
-/// The shortest text of a number that reads back as the same double: 0.2, 6.0, 1.0e-05, .nan. It
-/// always has a point, because rosparam takes `1e-05` for a string and `6` for an integer.
+/// Returns the shortest text that reads back as the same double: 0.2, 6.0, 1.0e-05, .nan. The text
+/// always has a decimal point, because rosparam reads `1e-05` as a string and `6` as an integer.
 std::string formatDouble(double value);
 
-/// Conversions of one YAML value. Each returns false, and leaves `value` alone, where the text does
+/// Parse one YAML value. Each function returns false and leaves `value` unchanged if the text does
 /// not have the type: 15.5 and 010 are no int, 0x10 is no double, `yes` is no bool. A quoted number
-/// is a number. .inf and .nan are doubles: it is the options' business to refuse them. A list of
-/// numbers with one entry may be the bare number.
+/// is a number. .inf and .nan are doubles, and the options struct decides whether to refuse them. A
+/// list of numbers with one entry may be written as a bare number.
 bool parseValue(const YAML::Node& node, int* value);
 bool parseValue(const YAML::Node& node, double* value);
 bool parseValue(const YAML::Node& node, bool* value);
@@ -36,11 +36,11 @@ bool parseValue(const YAML::Node& node, std::vector<Value>* value) {
   return true;
 }
 
-/// A finite decimal number of a command line or a CSV file, without a unit behind it. Blanks around it
-/// are allowed. Returns false, and leaves `value` alone, for anything else.
+/// Parses a finite decimal number of a command line or a CSV file, without a unit. Blanks around
+/// the number are allowed. Returns false and leaves `value` unchanged for any other text.
 bool parseNumber(const std::string& text, double* value);
 
-/// What a value of this type must be, to end the sentence "key must be ...".
+/// Describes the type of a value; completes the sentence "key must be ...".
 inline std::string expectedType(const int*) { return "an integer (32 bit)"; }
 inline std::string expectedType(const double*) { return "a number"; }
 inline std::string expectedType(const bool*) { return "true or false"; }
@@ -53,8 +53,8 @@ std::string expectedType(const std::vector<Value>*) {
   return "a list, each entry " + expectedType(static_cast<const Value*>(nullptr));
 }
 
-/// One value as YAML; lists in flow style, a list of numbers with one entry as the number.
-/// parseValue() reads back exactly the same.
+/// Convert a value to YAML. Lists are written in flow style, and a list of numbers with one entry
+/// is written as the number. parseValue() reads the same value back.
 YAML::Node valueToYaml(int value);
 YAML::Node valueToYaml(double value);
 YAML::Node valueToYaml(bool value);

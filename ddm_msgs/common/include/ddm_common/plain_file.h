@@ -1,4 +1,4 @@
-// Files that are read and written as a whole, and paths in a home folder.
+// Reads and writes whole files, and expands paths in a home folder.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -6,32 +6,37 @@
 
 namespace ddm {
 
-/// A pipe would be waited for without end, and a device read until there is no memory.
-/// @throws std::runtime_error unless the path is a file with an end
+/// Refuses pipes and devices: reading from a pipe can block without end, and reading from a device
+/// can exhaust the memory.
+/// @throws std::runtime_error unless the path is a regular file
 void requirePlainFile(const std::string& path);
 
+/// Reads a regular file.
 /// @throws std::runtime_error with the path and the reason
 std::string readFile(const std::string& path);
 
-/// Writes bytes to a new file next to `path` and renames it: there is never half a file under the
-/// name. If several processes or threads write at once, one of their files survives, whole.
-/// After a power cut there is the old file or the new one, and the new one if this had returned.
-/// @throws std::runtime_error with the path and the reason, also if there is something at the path
-///         that is not a regular file; then nothing has changed, unless the disk fails at the end
+/// Writes bytes to a new file next to `path` and renames it to `path`, so `path` never contains an
+/// incomplete file. If several processes or threads write at once, one of their files remains,
+/// complete. After a power failure, `path` contains the old or the new content; it contains the new
+/// content if this function had returned.
+/// @throws std::runtime_error with the path and the reason, also if `path` exists and is not a
+///         regular file; `path` is then unchanged, unless the disk failed during the last step
 void writeFileAtomically(const std::string& path, const std::string& bytes);
 
-/// Removes what writeFileAtomically() left behind in a folder, and in those within, when its process
-/// was killed. Only for a folder in which no other process writes.
+/// Removes the incomplete files that killed processes left behind in writeFileAtomically(), in a
+/// folder and its subfolders. Use it only for a folder in which no other process writes.
 void removeUnfinished(const std::string& folder);
 
-/// Renames a file that somebody else wrote and closed. Its bytes are on the disk before it has the
-/// name, and the name is when this returns: after a power cut nothing incomplete has it.
+/// Renames a closed file durably. The content of the file is on the disk before the file is
+/// renamed, and the new name is on the disk before this function returns. After a power failure, no
+/// incomplete file has the new name.
 /// @throws std::runtime_error with the path and the reason
 void renameDurably(const std::string& from, const std::string& to);
 
-/// `~/x` and `~name/x` with the home folder, which a shell expands at the start of a word only: not in
-/// `--out=~/x`, and not in `runs:=~/x` of roslaunch. Any other text stays as it is.
-/// @param word  may be an option with its value, `--out=~/x`
+/// Replaces `~` in `~/x` and `~name` in `~name/x` by the home folder. A shell does so only at the
+/// start of a word, not in `--out=~/x`, and not in `runs:=~/x` of roslaunch. Any other text is
+/// returned unchanged.
+/// @param word  path, or option with a path as its value, such as `--out=~/x`
 std::string expandHome(std::string word);
 
 }  // namespace ddm

@@ -1,4 +1,4 @@
-// Random streams of an experiment: one per role, so that one role's draws never shift another's.
+// Random streams of an experiment: an independent one for each purpose.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -7,30 +7,33 @@
 
 namespace ddm {
 
-/// Which run of an experiment this is. Fixes every random draw made in it.
+/// Identifies an episode of an experiment and determines all of its random draws.
 struct TrialId {
-  std::uint64_t seed = 0;   ///< seed of the experiment
-  std::uint32_t trial = 0;  ///< number of the trial, 0 is the random one
-  bool evaluation = false;  ///< the greedy run after the trial
+  std::uint64_t seed = 0;  ///< seed of the experiment
+  /// Number of the episode: trial * trial/episodes + episode, where trial is the number of the trial
+  /// and episode the number within the trial. For an evaluation, number of the trial.
+  std::uint32_t trial = 0;
+  bool evaluation = false;  ///< true for the evaluation (greedy episode) that follows the trial
 };
 
-/// What a stream is for. The numbers are part of what a seed means: never change them.
+/// Purpose of a random stream. The numbers determine the draws of every seed: never change them.
 enum class StreamRole : std::uint32_t {
-  kStart = 1,           ///< start states
-  kInitialisation = 2,  ///< initial parameters of a model
-  kExploration = 3,     ///< random torques, and when
+  kStart = 1,           ///< initial states
+  kInitialisation = 2,  ///< initial weights of a model
+  kExploration = 3,     ///< random torques and the times at which they are used
   kPlannerStarts = 4,   ///< initial plans
-  kMeasurement = 5,     ///< noise of PILCO's measurements
-  kPolicySearch = 6,    ///< PILCO's initial policy
-  kCamera = 7,          ///< brightness and lost frames
-  kNoise = 8,           ///< of pixels
-  kGoalNoise = 9,       ///< of the goal image's pixels
-  kClutter = 10,        ///< background
-  kGoal = 11,           ///< goals
-  kScene = 12           ///< nuisances in the scene: camera, colours, lights
+  kMeasurement = 5,     ///< measurement noise of PILCO
+  kPolicySearch = 6,    ///< initial policy of PILCO
+  kCamera = 7,          ///< brightness and lost images
+  kNoise = 8,           ///< pixel noise of the images
+  kGoalNoise = 9,       ///< pixel noise of the goal image
+  kClutter = 10,        ///< background pattern of the camera
+  kGoal = 11,           ///< goals of episodes
+  kScene = 12           ///< disturbances of the scene: camera pose, colours, lights
 };
 
-/// An engine fixed by run and role. (Distributions are fixed for a given libstdc++ only.)
+/// Returns the random engine for an episode and a purpose. The distributions of the standard
+/// library are reproducible for one version of libstdc++ only.
 inline std::mt19937_64 randomStream(const TrialId& id, StreamRole role) {
   std::seed_seq sequence{static_cast<std::uint32_t>(id.seed),
                          static_cast<std::uint32_t>(id.seed >> 32), id.trial,

@@ -1,4 +1,4 @@
-// main() of a node: parameters, then the node, and one way out.
+// main() of a node: reads the parameters, runs the node, and handles errors and shutdown.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -25,7 +25,8 @@ inline std::atomic<bool> end_requested{false};
 
 inline void onSignal(int /*signal*/) { end_requested = true; }
 
-/// The master's `shutdown`: of `rosnode kill`, and where another node takes the name.
+/// Handles the method `shutdown`, which the master calls for `rosnode kill` and when another node
+/// registers under the same name.
 inline void onShutdownRequest(XmlRpc::XmlRpcValue& params, XmlRpc::XmlRpcValue& result) {
   end_requested = true;
   result = ros::xmlrpc::responseInt(1, "", 0);
@@ -34,8 +35,7 @@ inline void onShutdownRequest(XmlRpc::XmlRpcValue& params, XmlRpc::XmlRpcValue& 
   }
 }
 
-/// The process ends ten seconds from now at the latest, whatever then still waits for a master or a
-/// terminal that was stopped.
+/// Ends the process after ten seconds, even if it is still blocked by a stopped master or terminal.
 inline void endSoon(int code) {
   std::thread([code] {
     std::this_thread::sleep_for(std::chrono::seconds(10));
@@ -43,9 +43,9 @@ inline void endSoon(int code) {
   }).detach();
 }
 
-/// roscpp sends and logs on the same thread, for instance when a subscriber has another message
-/// type. A stopped terminal would block that thread, and with it every zero torque. The node's own
-/// messages remain, and so do those of the other side.
+/// Silences roscpp's own log messages. roscpp sends and logs in the same thread, for instance if a
+/// subscriber expects another message type, so a stopped terminal would block that thread and every
+/// zero torque. The messages of the node itself and of the other node remain.
 inline void silenceSendingThread() {
   ros::console::set_logger_level("ros.roscpp", ros::console::levels::Fatal);
   ros::console::notifyLoggerLevelsChanged();
@@ -53,19 +53,19 @@ inline void silenceSendingThread() {
 
 }  // namespace internal
 
-/// What a node does when it is asked to end.
+/// How a node ends when the user or the master requests its end.
 enum class Ending {
-  kAtOnce,        ///< roscpp shuts down whatever it is doing
-  kByLastMessage  ///< it runs in runUntilEnd(), and sends a last message
+  kAtOnce,        ///< roscpp shuts down immediately
+  kByLastMessage  ///< the node runs in runUntilEnd() and sends a last message
 };
 
-/// Runs a node with motors until SIGINT, SIGTERM, SIGQUIT, SIGHUP (its terminal is closed; not under
-/// nohup, which ignores it) or the master asks it to end. Ctrl-Z does nothing: it would leave the
-/// motors with their last torque. roscpp's own handlers shut all topics down before a zero can be
-/// sent: start the node with kByLastMessage.
+/// Runs a node with motors until SIGINT, SIGTERM, SIGQUIT, SIGHUP or the master requests its end. A
+/// closed terminal sends SIGHUP, except under nohup. Ctrl-Z is ignored, because a suspended node
+/// would leave the motors with their last torque. roscpp's own signal handlers shut down all topics
+/// before a zero torque can be sent, so start the node with kByLastMessage.
 ///
-/// @param look  called again and again; returns soon
-/// @param stop  sends the last message; false: there was none to send
+/// @param look  called in a loop; must return soon
+/// @param stop  sends the last message; returns false if there was no message to send
 template <class Look, class Stop>
 void runUntilEnd(const Look& look, const Stop& stop) {
   std::signal(SIGINT, internal::onSignal);
@@ -74,7 +74,7 @@ void runUntilEnd(const Look& look, const Stop& stop) {
   std::signal(SIGTSTP, SIG_IGN);
   if (std::signal(SIGHUP, internal::onSignal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
   while (ros::ok() && !internal::end_requested) look();
-  if (stop()) ros::WallDuration(0.1).sleep();  // for the message to leave
+  if (stop()) ros::WallDuration(0.1).sleep();  // gives the message time to leave
   internal::endSoon(EXIT_SUCCESS);
   ros::shutdown();
 }
@@ -88,18 +88,19 @@ void runUntilEnd(const Look& look, const Stop& stop) {
 ///     ros::spin();
 ///   });
 ///
-/// A node whose name is taken is refused, see requireFreeName().
+/// If another node with the same name is running, this node refuses to start, see
+/// requireFreeName().
 ///
-/// @param run  (node handle, private node handle, reader of its parameters)
-/// @return exit code: 1 if `run` threw an exception, whose text is logged. After `run`, the process
-///         ends within ten seconds: ROS tells the master for each topic that it goes, and a master
-///         that was stopped never answers
+/// @param run  function of (node handle, private node handle, reader of the parameters)
+/// @return exit code: 1 if `run` threw an exception, whose text is logged. The process ends at most
+///         ten seconds after `run`: ROS unregisters each topic at the master, and a stopped master
+///         never answers
 template <class Run>
 int runNode(const std::string& name, int argc, char** argv, const Run& run,
             Ending ending = Ending::kAtOnce) {
   if (ending == Ending::kByLastMessage) {
     ros::init(argc, argv, name, ros::init_options::NoSigintHandler);
-    // Before there is a node handle: with it, roscpp binds what is not bound yet.
+    // Must come before the first node handle, which binds roscpp's own handler unless one is bound.
     ros::XMLRPCManager::instance()->bind("shutdown", internal::onShutdownRequest);
   } else {
     ros::init(argc, argv, name);

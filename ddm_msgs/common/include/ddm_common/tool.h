@@ -1,4 +1,4 @@
-// What all command line tools have in common: options, --help, exit codes.
+// Common parts of all command line tools: options, --help, exit codes.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -13,20 +13,20 @@
 
 namespace ddm {
 
-constexpr int kUsageError = 2;  ///< exit code
+constexpr int kUsageError = 2;  ///< exit code for an invalid command line
 
-/// Arguments that belong to no option.
+/// Arguments without an option name.
 struct Positional {
   const char* name;
   const boost::program_options::value_semantic* value;
-  int max_count;  ///< -1: as many as there are
+  int max_count;  ///< largest number of arguments; -1: no limit
 };
 
-/// Reads the command line into the variables that the options were given.
-/// @param options  what --help shows; --help itself is added
-/// @param style    how options may be written
-/// @return false where --help was asked for and has been printed
-/// @throws boost::program_options::error for options that are unknown, wrong or missing
+/// Reads the command line into the variables that the options refer to.
+/// @param options  options for --help; this function adds --help itself
+/// @param style    boost::program_options style of the command line
+/// @return false if the user asked for --help, which has then been printed
+/// @throws boost::program_options::error for unknown, invalid or missing options
 inline bool parseCommandLine(
     int argc, char** argv, boost::program_options::options_description options,
     const std::optional<Positional>& positional = std::nullopt,
@@ -52,9 +52,9 @@ inline bool parseCommandLine(
   return true;
 }
 
-/// Runs a tool. What goes wrong is told on stderr, behind its name.
-/// @param configure  reads the command line; false: there is nothing to do
-/// @return 0 done, 1 `run` threw an exception, 2 `configure` did
+/// Runs a tool. Prints errors to stderr after the name of the tool.
+/// @param configure  reads the command line; returns false if there is nothing to do
+/// @return 0: success; 1: `run` threw an exception; 2: `configure` threw an exception
 template <class Configure, class Run>
 int runTool(const std::string& name, const Configure& configure, const Run& run) {
   try {

@@ -1,4 +1,4 @@
-// Who is at the other end of a topic, and whether they have found each other.
+// Queries which nodes publish a topic and whether publishers and subscribers are connected.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -11,51 +11,57 @@
 
 namespace ddm {
 
+/// Address of the XML-RPC server of a node.
 struct NodeAddress {
   std::string host;
   std::uint32_t port = 0;
 };
 
-/// Calls a method of the master's interface.
-/// @return its answer; empty if there is no master, or none within five seconds: one that was
-///         stopped takes the question and never answers
+/// Calls a method of the ROS master.
+/// @return the answer; empty if there is no master or no answer within five seconds. A stopped
+///         master accepts the request and never answers
 std::optional<XmlRpc::XmlRpcValue> askMaster(const std::string& method,
                                              const XmlRpc::XmlRpcValue& request);
 
-/// Where a node was when it registered; empty if the master does not know it, or does not
-/// answer.
+/// Returns the address under which a node has registered; empty if the master does not have the
+/// node or does not answer.
 /// @param node  resolved name
 std::optional<NodeAddress> addressOf(const std::string& node);
 
-/// When a node registers, the master ends the one that had its name: a second launch would end the
-/// nodes of the first, and take the motors from a robot. To be called after ros::init() and before the
-/// first node handle, which registers. Where two nodes start at once, both may pass.
-/// @throws std::runtime_error with name and address if a node with the name of this one answers
+/// Refuses to start a second node of the same name. When a node registers, the master ends the node
+/// that had its name: a second launch would end the nodes of the first launch and take the motors
+/// from a robot. Call this function after ros::init() and before the first node handle, which
+/// registers the node. If two nodes start at the same time, both may pass.
+/// @throws std::runtime_error with name and address if another node with the name of this node
+///         answers
 void requireFreeName();
 
-/// "publisher(s) of /torque: /mpc_node" or "nobody publishes /torque", as the master knows it.
+/// Returns "publisher(s) of /torque: /mpc_node" or "nobody publishes /torque", according to the
+/// master.
 /// @param topic  resolved name
 std::string describePublishers(const std::string& topic);
 
-/// The same for a topic of images, with a remedy where images are published in another form: as
-/// another type, or only compressed.
+/// As describePublishers(), for an image topic. Adds a remedy if the images are published as
+/// another type or only compressed.
 /// @param topic     resolved name
-/// @param argument  for the remedy: how the user names another topic, such as "camera:="
+/// @param argument  launch argument by which the user chooses another topic, such as "camera:=";
+///         for the remedy
 std::string describeImagePublishers(const std::string& topic, const std::string& argument);
 
-/// Asks each publisher of the topics for its connections. Messages are safe only from the moment
-/// the publisher has made the connection; the subscriber counts the publisher before that.
+/// Returns the connections between publishers and subscribers of the topics that do not exist yet.
+/// Asks each publisher for its connections, because a message is lost until the publisher has made
+/// the connection, and the subscriber counts the publisher before that moment.
 /// @param topics  resolved names
-/// @return "/sim_node -> /mpc_node on /camera/image_raw" for each connection that is still missing
+/// @return "/sim_node -> /mpc_node on /camera/image_raw" for each missing connection
 std::vector<std::string> missingConnections(const std::vector<std::string>& topics);
 
-/// Other nodes than this one that publish a topic, as the master knows them: "/a, /b".
+/// Returns the other nodes that publish a topic, according to the master: "/a, /b".
 /// @param topic  resolved name
 std::string otherPublishers(const std::string& topic);
 
+/// Finds the topics that several other nodes publish; this node is not counted.
 /// @param topics  resolved names
-/// @return "/torque: /intruder, /mpc_node" for each topic that more than one node publishes, this
-/// one, which knows what it publishes, not counted
+/// @return "/torque: /intruder, /mpc_node" for each such topic
 std::vector<std::string> sharedTopics(const std::vector<std::string>& topics);
 
 }  // namespace ddm

@@ -1,4 +1,4 @@
-// Limits for what ROS would wait for without end: services and simulated time.
+// Time limits for ROS calls that could block without end: services and simulated time.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -16,10 +16,12 @@
 
 namespace ddm {
 
-/// Calls a function in a thread of its own. It must own what it uses: where it does not return
-/// within the limit, that thread is left behind.
-/// @param check  called now and then meanwhile, to throw what ends the wait
-/// @return what it returned; empty if it did not. Exceptions are passed on
+/// Calls a function in a thread of its own. If the function does not return within the limit, the
+/// thread is left running, so the function must own all data that it uses.
+/// @param limit  wall time [s]
+/// @param check  called every 20 ms while waiting; may throw to end the wait
+/// @return the result of the function; empty if the function did not return in time. Exceptions of
+///         the function are passed on
 template <class Function, class Check>
 auto callWithin(std::chrono::duration<double> limit, Function function, const Check& check)
     -> std::optional<decltype(function())> {
@@ -42,23 +44,26 @@ auto callWithin(std::chrono::duration<double> limit, Function function)
 
 constexpr char kInterrupted[] = "interrupted; the same command resumes";
 
-/// " (waited 60 s)"
+/// Formats a limit [s] as " (waited 60 s)", for messages.
 std::string waited(double limit);
 
-/// callWithin() that also ends on shutdown.
+/// As callWithin(); also ends on shutdown.
 /// @param limit  wall time [s]
+/// @return the result of the function; empty after the limit
 /// @throws std::runtime_error on shutdown
 std::optional<bool> answerWithin(double limit, std::function<bool()> function);
 
-/// Calls a service. To connect to it counts within the limit: a master that is stopped, or a host
-/// that is gone, can take minutes for that.
-/// @param name     resolved
-/// @param client   the connection, made where there is none; kept for the next call. With one for
-///                 each call the server hangs up after its answer, and a busy client may hear that
-///                 first and lose the answer (github.com/ros/ros_comm/issues/1976)
-/// @param service  request in, response out
+/// Calls a service. The limit includes the time to connect, because a connection to a stopped
+/// master or an unreachable host can take minutes.
+/// @param name     resolved name of the service
+/// @param client   connection; made if it is not valid, and kept for the next call. With a new
+///         connection for each call, the server closes the connection after its answer, and a busy
+///         client may see the closed connection first and lose the answer
+///         (github.com/ros/ros_comm/issues/1976)
+/// @param service  in: request; out: response
 /// @param limit    wall time [s]
-/// @throws std::runtime_error naming the service if it does not answer, or reports no success
+/// @throws std::runtime_error with the name of the service if it does not answer or reports no
+///         success
 template <class Service>
 void callService(const std::string& name, ros::ServiceClient* client, Service* service,
                  double limit) {
@@ -66,7 +71,7 @@ void callService(const std::string& name, ros::ServiceClient* client, Service* s
     ros::ServiceClient client;
     Service service;
   };
-  // Its thread alone uses it until there is an answer.
+  // Only the thread of the call uses this object until there is an answer.
   const auto call = std::make_shared<Call>(Call{*client, *service});
   const auto success = answerWithin(limit, [call, name, nh = ros::NodeHandle()]() mutable {
     if (!call->client.isValid())
@@ -74,8 +79,8 @@ void callService(const std::string& name, ros::ServiceClient* client, Service* s
     return call->client.call(call->service);
   });
   if (!success) {
-    // The next call begins with a connection of its own. Not shutdown(): copies of a client share one
-    // connection, and the thread that is left behind may be using it.
+    // The next call makes a new connection. Do not call shutdown() here: copies of a client share
+    // one connection, and the thread that is left running may still use it.
     *client = ros::ServiceClient();
     throw std::runtime_error("service " + name + " does not answer" + waited(limit));
   }
@@ -87,10 +92,10 @@ void callService(const std::string& name, ros::ServiceClient* client, Service* s
   }
 }
 
-/// Waits until the first time on /clock is there, where /use_sim_time says that it is due. To be
-/// called before an action client is made, which would wait without a limit.
+/// If /use_sim_time is set, waits for the first message on /clock. Call this function before the
+/// construction of an action client, which would wait without a limit.
 /// @param limit  wall time [s]
-/// @throws std::runtime_error after the limit, with those who should publish it
+/// @throws std::runtime_error after the limit, with the nodes that publish /clock
 void waitForSimulatedTime(double limit);
 
 }  // namespace ddm

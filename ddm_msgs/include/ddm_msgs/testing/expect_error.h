@@ -1,4 +1,4 @@
-// Texts and errors that name what a user can act on, in whatever words.
+// Checks that a text or an error contains given parts, whatever the rest of its wording.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -12,7 +12,7 @@
 namespace ddm {
 namespace testing {
 
-/// Whether a text has all the parts.
+/// Succeeds if the text contains all parts.
 inline ::testing::AssertionResult names(const std::string& text,
                                         const std::vector<std::string>& parts) {
   for (const std::string& part : parts) {
@@ -23,7 +23,7 @@ inline ::testing::AssertionResult names(const std::string& text,
   return ::testing::AssertionSuccess();
 }
 
-/// Whether `action` throws this type, with all the parts in its message.
+/// Succeeds if `action` throws an error of this type whose message contains all parts.
 template <class Error>
 ::testing::AssertionResult throwsNaming(const std::function<void()>& action,
                                         const std::vector<std::string>& parts) {

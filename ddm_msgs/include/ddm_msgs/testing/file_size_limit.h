@@ -1,4 +1,4 @@
-// A limit that makes writing fail as on a full disk, also for root.
+// A file size limit that makes writing fail like a full disk, also for root.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -9,7 +9,7 @@
 namespace ddm {
 namespace testing {
 
-/// While it lives, no file that this process writes may grow beyond a size.
+/// While this object exists, this process cannot write a file beyond `bytes`.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {

@@ -1,4 +1,4 @@
-// What the fuzz targets have in common: promises that are kept, and refusals that say why.
+// Common parts of the fuzz targets: checks, choice of the target, and input.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -15,15 +15,15 @@
 namespace ddm {
 namespace testing {
 
-/// Ends the program where a promise is broken: libFuzzer then keeps the input.
+/// Aborts the program if a promise is broken, so that libFuzzer keeps the input.
 inline void require(bool kept, const char* promise) {
   if (kept) return;
   std::fprintf(stderr, "broken promise: %s\n", promise);
   std::abort();
 }
 
-/// Whether read() accepts its input. If not it must throw an Error with a text; any other exception
-/// ends the program.
+/// Returns whether read() accepts its input. To refuse the input, read() must throw an Error with a
+/// text; any other exception ends the program.
 template <class Error, class Read>
 bool accepts(const Read& read) {
   try {
@@ -35,10 +35,12 @@ bool accepts(const Read& read) {
   }
 }
 
-/// What reads one input. Targets have names, which are those of their folders of seeds in corpus/.
+/// Function that reads one input. The name of a target is the name of its folder of seeds in
+/// corpus/.
 using FuzzTarget = void (*)(const std::uint8_t* data, std::size_t size);
 
-/// The target that the environment variable FUZZ_TARGET names.
+/// Returns the target that the environment variable FUZZ_TARGET names. Exits if there is no such
+/// target.
 inline FuzzTarget chosenTarget(const std::map<std::string, FuzzTarget>& targets) {
   const char* name = std::getenv("FUZZ_TARGET");
   const auto found = targets.find(name != nullptr ? name : "");
@@ -49,7 +51,7 @@ inline FuzzTarget chosenTarget(const std::map<std::string, FuzzTarget>& targets)
   std::exit(2);
 }
 
-/// A file in memory, for what takes a path.
+/// A file in memory, for functions that take a path.
 class MemoryFile {
  public:
   MemoryFile() : file_(::memfd_create("fuzz", 0)) { require(file_ >= 0, "memfd_create works"); }
@@ -67,7 +69,7 @@ class MemoryFile {
   int file_;
 };
 
-/// Numbers from the front of an input; zeros when it is used up.
+/// Reads numbers from the front of an input, and zeros after its end.
 class FuzzBytes {
  public:
   FuzzBytes(const std::uint8_t* data, std::size_t size)
@@ -81,7 +83,7 @@ class FuzzBytes {
     skip(size);
     return value;
   }
-  /// At most `size` bytes, fewer at the end.
+  /// Reads `size` bytes, or fewer at the end of the input.
   std::string text(std::size_t size) {
     const std::string out(at_, size < left_ ? size : left_);
     skip(out.size());

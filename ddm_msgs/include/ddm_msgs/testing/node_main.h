@@ -1,4 +1,4 @@
-// main() of a test that is a node; its .test file names it. Include it in one file of a program.
+// main() of a test that is a ROS node. Include it in exactly one file of a program.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 

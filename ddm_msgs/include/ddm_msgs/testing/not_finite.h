@@ -1,4 +1,4 @@
-// Numbers that are not finite, for tests of what must be refused.
+// NaN and infinity, for tests of refused values.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 

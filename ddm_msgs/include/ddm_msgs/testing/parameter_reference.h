@@ -1,4 +1,4 @@
-// What must hold for a parameter reference, a YAML file of config/ that explains blocks.
+// Checks a parameter reference: a YAML file in config/ that lists and explains the keys of a block.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -18,8 +18,8 @@ inline std::vector<std::string> keysOf(const YAML::Node& map) {
   return keys;
 }
 
-/// Each key of the struct stands in the block with its default, in the order of visit(), and no other
-/// key does.
+/// Expects that the block of the file contains exactly the keys of the struct, in the order of
+/// visit(), with their default values.
 template <class Options>
 void expectDefaults(const std::string& file, const std::string& block) {
   ParamReader reader = ParamReader::fromFiles({file});

@@ -1,4 +1,4 @@
-// A node with bad parameters says what is wrong and ends with an error.
+// Test fixture: a node with invalid parameters reports them and exits with an error.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -13,12 +13,13 @@
 namespace ddm {
 namespace testing {
 
-/// For tests that set parameters of /bad_node.
+/// Fixture for tests that set parameters of /bad_node.
 class RefusedParams : public ::testing::Test {
  protected:
   void TearDown() override { ros::param::del("/bad_node"); }
 
-  /// Runs a program as /bad_node to its end, which must be an error with each of the words.
+  /// Runs a program as /bad_node and expects exit code 1 and output that contains each of the
+  /// words.
   static void expectRefused(const std::string& program, const std::vector<std::string>& words) {
     const Outcome outcome = run(program + " __name:=bad_node 2>&1");
     EXPECT_EQ(outcome.exit_code, 1);

@@ -1,4 +1,4 @@
-// Runs a program as a user would: arguments in, text and exit code out.
+// Runs a program with arguments and standard input, and returns its output and exit code.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -15,13 +15,13 @@ namespace ddm {
 namespace testing {
 
 struct Outcome {
-  int exit_code;    ///< 128 and its number if a signal ended the program
+  int exit_code;    ///< exit code; 128 + signal number if a signal ended the program
   std::string out;  ///< standard output
   std::string err;  ///< standard error
 };
 
-/// @param command  as for a shell
-/// @param input    standard input
+/// @param command  command line for a shell
+/// @param input    text for standard input
 inline Outcome run(const std::string& command, const std::string& input = "") {
   const TempFolder folder;
   const auto text = [&folder](const std::string& name) {

@@ -1,4 +1,4 @@
-// A folder for the files of one test.
+// A temporary folder for the files of one test.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -10,7 +10,7 @@
 namespace ddm {
 namespace testing {
 
-/// Made empty, removed with everything in it.
+/// Creates an empty folder, and deletes the folder with its content at the end.
 class TempFolder {
  public:
   TempFolder() {

@@ -1,4 +1,4 @@
-// A plant whose every answer a test may change, and a camera with all nuisances at once.
+// A plant for tests with replaceable functions, and a camera with all disturbances at once.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -21,13 +21,13 @@
 namespace ddm {
 namespace testing {
 
-/// A picture of one grey, all of it covered.
+/// An image with one grey value, fully covered by the plant.
 inline Picture plainPicture(int size, std::uint8_t grey) {
   const auto num_pixels = static_cast<std::size_t>(size) * static_cast<std::size_t>(size);
   return brightOnBlack(size, std::vector<std::uint8_t>(num_pixels, grey));
 }
 
-/// A cart on a rail, one motor, to be brought to 1 m.
+/// A cart on a rail with one motor; the goal is the position 1 m.
 inline PlantInfo toyInfo() {
   PlantInfo info;
   info.joints = {{"cart", JointKind::kLength}};
@@ -42,7 +42,7 @@ inline PlantInfo toyInfo() {
   return info;
 }
 
-/// By default it keeps all rules of a plant; its picture is white, whatever its state.
+/// By default this plant satisfies all rules of a plant, and its image is white in every state.
 class ToyPlant : public Plant {
  public:
   struct Traits {
@@ -61,7 +61,7 @@ class ToyPlant : public Plant {
     std::function<Eigen::VectorXd(const Eigen::VectorXd&)> locate =
         [](const Eigen::VectorXd& state) { return Eigen::VectorXd(state.head(1)); };
 
-    // Empty: as every plant does by default.
+    // If empty, the default implementation of Plant is used.
     std::function<Eigen::VectorXd(std::mt19937_64*)> draw_start;
     std::function<Eigen::VectorXd(std::mt19937_64*)> draw_goal;
     std::function<std::optional<double>(const Eigen::VectorXd&, const Eigen::VectorXd&)> reward;
@@ -96,7 +96,7 @@ class ToyPlant : public Plant {
   Traits traits_;
 };
 
-/// Makes toys as the plant "their_package/Toy".
+/// Makes toy plants of the type "their_package/Toy".
 class ToyMaker : public PlantMaker {
  public:
   using Make = std::function<std::unique_ptr<Plant>()>;
@@ -112,8 +112,8 @@ class ToyMaker : public PlantMaker {
   Make make_;
 };
 
-/// A cart that is seen as a disc on a wide picture in colour, has a reward, and draws its goal:
-/// all that our own plants do not do.
+/// A toy plant with the features that no plant of this package has: a wide colour image (of a
+/// disc), a reward and drawn goals.
 inline ToyPlant::Traits colourfulToy() {
   ToyPlant::Traits traits;
   traits.draw = [](const Eigen::VectorXd& state) {

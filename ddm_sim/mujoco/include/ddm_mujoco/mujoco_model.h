@@ -1,4 +1,4 @@
-// A model file, MJCF or URDF, as MuJoCo understands it.
+// Class MujocoModel: a model file (MJCF or URDF) that MuJoCo has compiled.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -13,71 +13,76 @@
 
 namespace ddm {
 
-/// Folder of a ROS package; empty if there is none of this name.
+/// Returns the folder of a ROS package, or an empty text if no package has this name.
 using FindPackage = std::function<std::string(const std::string& package)>;
 
-/// Makes MuJoCo throw std::runtime_error where it would otherwise wait for a key, exit, or write
-/// MUJOCO_LOG.TXT into the working folder. To be called before anything else of MuJoCo; cheap and
-/// harmless when called again. MujocoModel does it.
+/// Makes MuJoCo throw std::runtime_error where MuJoCo would otherwise wait for a key, exit, or
+/// write MUJOCO_LOG.TXT into the working folder. Call this function before any other function of
+/// MuJoCo. Further calls have no effect. The constructor of MujocoModel calls this function.
 void installMujocoHandlers();
 
-/// What has a position in the world: a site, or the centre of mass of a body, which URDF calls
-/// link. Its origin would be the joint that turns it, where a pole is at any angle.
+/// An object with a position in the world: a site, or the centre of mass of a body (a "link" in a
+/// URDF). The origin of a body would not do: it often lies on the axis of the joint that turns the
+/// body, and stays there at any angle.
 struct Place {
   mjtObj type;  ///< mjOBJ_SITE or mjOBJ_BODY
   int id;
 };
 
-/// What a URDF says beyond the model that MuJoCo compiles of it. Empty for an MJCF file.
+/// Facts in a URDF file that MuJoCo does not compile into its model. Empty for an MJCF file.
 struct UrdfFacts {
-  std::map<std::string, double> efforts;       ///< largest torques of joints [N m or N]
-  std::map<std::string, std::string> leaders;  ///< joints that mimic another one, and that one
-  std::map<std::string, std::string> fixed;    ///< links behind fixed joints, and their parents
-  std::vector<std::string> transmissions;      ///< joints that the <transmission> elements name
+  std::map<std::string, double> efforts;  ///< largest torque or force of each joint [N m or N]
+  /// Leader of each joint that mimics another joint.
+  std::map<std::string, std::string> leaders;
+  /// Parent of each link behind a fixed joint.
+  std::map<std::string, std::string> fixed;
+  /// Joints that the <transmission> elements name.
+  std::vector<std::string> transmissions;
 };
 
-/// A compiled model. It is never changed, so that all plants of one maker share it.
+/// A compiled model. Plants of the same maker share one model, which never changes.
 ///
-/// A URDF is read as its author meant it: its visual shapes are kept, `package://` in mesh names
-/// is resolved, links behind fixed joints are merged into their parents, continuous joints turn
-/// without end, and joints follow those that they <mimic>. Nothing touches anything, and there is
-/// light. A <mujoco> block of the file overrides what it names.
+/// For a URDF file this class keeps the visual shapes, resolves `package://` in mesh names, merges
+/// links behind fixed joints into their parents, lets continuous joints turn without limits, and
+/// couples each joint with a <mimic> element to its leader. Contacts are disabled, and a light is
+/// added. A <mujoco> block in the file overrides the settings that the block names.
 ///
-/// The file is first read in a process of its own, so that nothing that MuJoCo does with it ends
-/// this one.
+/// A separate process reads the file first, so that a crash or an exit inside MuJoCo does not end
+/// this process.
 class MujocoModel {
  public:
   /// @param uri           path, or package://PACKAGE/PATH
-  /// @param find_package  finds the packages that the uri and the file name
-  /// @throws std::invalid_argument naming file or package and what is wrong: not found, no model,
-  ///         something in it that MuJoCo does not take (with its line)
+  /// @param find_package  returns the folders of the packages that the uri and the file name
+  /// @throws std::invalid_argument naming the file or package and the reason: the file is not
+  ///         found, is not a model, or has content that MuJoCo refuses (with its line)
   MujocoModel(const std::string& uri, const FindPackage& find_package);
 
   const std::string& uri() const { return uri_; }
   const mjModel& get() const { return *model_; }
   std::shared_ptr<const mjModel> share() const { return model_; }
 
-  /// Of the bytes of the file and of all files that it names: "crc32-" and eight hexadecimal
-  /// digits.
+  /// Checksum over the bytes of the model file and of all files that it names: "crc32-" and eight
+  /// hexadecimal digits.
   const std::string& digest() const { return digest_; }
 
-  /// Number of the object of this name.
+  /// Index of the object with this name.
   /// @param type  mjOBJ_JOINT, mjOBJ_SITE, ...
-  /// @param key   YAML key that has the name, for the message: "plant/error_sites"
+  /// @param key   YAML key that holds the name, for the error message: "plant/error_sites"
   /// @throws std::invalid_argument with the nearest name and all names, if there is no such object
   int id(mjtObj type, const std::string& name, const std::string& key) const;
 
-  /// The site of this name, else the body.
+  /// The site with this name, or else the body with this name.
   /// @throws std::invalid_argument as id()
   Place place(const std::string& name, const std::string& key) const;
 
   const UrdfFacts& urdf() const { return urdf_; }
 
-  /// Largest torque of a joint by a URDF [N m or N]; none if the file does not say. Many files say
-  /// 0.
+  /// Largest torque or force of a joint in the URDF file [N m or N]. Empty if the file has no
+  /// value. Many files have the value 0.
   std::optional<double> effortLimit(const std::string& joint) const;
 
-  /// Name of an object; "joint_2" if it has none.
+  /// Name of an object, or a name made from type and index, such as "joint_2", if the object has
+  /// none.
   std::string name(mjtObj type, int id) const;
 
   /// Names of all objects of this type.
@@ -90,7 +95,7 @@ class MujocoModel {
   std::shared_ptr<const mjModel> model_;
 };
 
-/// Help for an unknown name: "did you mean wrist? There are shoulder, wrist".
+/// Text that helps with an unknown name: "did you mean wrist? There are shoulder, wrist".
 std::string suggestion(const std::string& name, const std::vector<std::string>& known);
 
 }  // namespace ddm

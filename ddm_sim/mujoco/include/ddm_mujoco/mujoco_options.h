@@ -1,4 +1,4 @@
-// A plant that a model file describes: the keys of its YAML block `plant:`.
+// Options of a plant with a MuJoCo model: the keys of its YAML block `plant:`.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -10,36 +10,44 @@
 
 namespace ddm {
 
-/// What a model file cannot say. Lists of the state have a number for each joint, or one for each
-/// joint and then one for each rate; those of motors have one for each motor.
+/// Properties of a plant that a model file does not contain. A list that describes a state has one
+/// number per joint (positions), or one number per joint for the positions and then one per joint
+/// for the rates. A list that describes motors has one number per motor.
 struct MujocoOptions : PlantOptions {
-  std::string model;         ///< MJCF or URDF: a path, or package://PACKAGE/PATH
-  std::string model_digest;  ///< of the model and all files that are named; filled in
+  std::string model;  ///< MJCF or URDF: a path, or package://PACKAGE/PATH
+  /// Checksum of the model file and of all files that it names; completed() fills it in.
+  std::string model_digest;
 
-  double timestep = 0.0;  ///< of MuJoCo [s]; 0: that of the file
+  double timestep = 0.0;  ///< time step of MuJoCo [s]; 0: the time step of the model file
 
   std::vector<std::string> motors;  ///< joints that have a motor; empty: the actuators of the file
 
-  std::vector<double> start;          ///< mean initial state [rad, m]; empty: pose 0 of the file
-  std::vector<double> start_uniform;  ///< half-width of a uniform part of the initial state
-  std::vector<double> goal;           ///< state to reach and hold [rad, m]; empty: all zero
-  std::string goal_site;  ///< site or body that a drawn goal brings to a point of the x-y plane
-  std::vector<double> goal_distance;       ///< least and largest distance of that point from 0 [m]
-  std::vector<std::string> error_joints;   ///< joints whose error counts; empty: all
-  std::vector<std::string> error_sites;    ///< or sites and bodies, whose distance counts
-  double tolerance = 0.0;                  ///< largest error at the goal [deg or m]
-  std::vector<std::string> visible_sites;  ///< what the oracle method sees; empty: all bodies
+  std::vector<double> start;  ///< mean initial state [rad, m]; empty: qpos0 of the file
+  /// Half-width of a uniform part of the initial state [rad, m]
+  std::vector<double> start_uniform;
+  std::vector<double> goal;  ///< state to reach and hold [rad, m]; empty: all zero
+  /// Site or body that the goal state brings to a point of the x-y plane; this point is drawn for
+  /// each episode.
+  std::string goal_site;
+  /// Smallest and largest distance of that point from 0 [m]
+  std::vector<double> goal_distance;
+  std::vector<std::string> error_joints;  ///< joints whose error is measured; empty: all joints
+  /// Alternative: sites and bodies whose distance is measured.
+  std::vector<std::string> error_sites;
+  double tolerance = 0.0;  ///< largest error of a reached goal [deg or m]
+  /// Positions that the method oracle gets; empty: all bodies.
+  std::vector<std::string> visible_sites;
 
-  std::vector<std::string> state_names;   ///< columns; empty: by joint and unit
-  std::vector<std::string> torque_names;  ///< columns; empty: by joint and unit
-  std::string reward;                     ///< one of rewards.h; empty: none
-  int episode_frames = 0;                 ///< physics frames of an evaluation; 0: those of a trial
+  std::vector<std::string> state_names;   ///< column names; empty: made from joint and unit
+  std::vector<std::string> torque_names;  ///< column names; empty: made from joint and unit
+  std::string reward;                     ///< name of a reward in rewards.h; empty: no reward
+  int episode_frames = 0;                 ///< physics steps of an evaluation; 0: as long as a trial
 
-  RenderOptions look;  ///< of the learner's image; its size is picture_size
+  RenderOptions look;  ///< how the learner's image is drawn; its size is picture_size
 
   MujocoOptions() {
     type = "mujoco";
-    max_torque.clear();  // those of the file
+    max_torque.clear();  // empty: the limits of the model file
   }
 
   template <class Visitor>
@@ -72,8 +80,8 @@ struct MujocoOptions : PlantOptions {
     visitor("colour_shift", look.colour_shift);
   }
 
-  /// Everything wrong with these values, in words a user can act on. Empty means valid.
-  /// MujocoPlant checks that they fit the model file.
+  /// All problems with these values, in words that a user can act on. Empty means valid. The
+  /// constructor of MujocoPlant checks that the options fit the model file.
   std::vector<std::string> problems() const;
 };
 

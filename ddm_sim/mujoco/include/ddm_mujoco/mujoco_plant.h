@@ -1,4 +1,4 @@
-// A plant that a model file describes, moved by MuJoCo.
+// Class MujocoPlant: a plant that a model file describes and that MuJoCo simulates.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -18,17 +18,22 @@ namespace ddm {
 
 class MujocoPhysics;
 
-/// The state is all positions, then all rates, in the order of the joints in the file; hinges [rad]
-/// and slides [m] alone, an angle is never wrapped. A step is dt / h physics frames, h the time
-/// step of the file, under the torques u at the joints of the motors, and depends on state and torque
-/// alone: nothing is carried over from the frames before.
+/// Plant with the physics of a MuJoCo model.
 ///
-/// Goal: `goal`, or with `goal_site` for each run a pose that brings this site to a point of its
-/// x-y plane. Error: the largest distance of a joint (angles the short way round [deg], slides [m])
-/// or of a site [m] to where it is at the goal.
+///   state = (q_1 ... q_n, dq_1/dt ... dq_n/dt),   joints in the order of the file
+///
+/// Joints are hinges [rad] or slides [m]. Angles are never wrapped. One time step dt consists of dt
+/// / h physics steps, where h is the time step of the model, under constant torques u at the
+/// motors' joints. The next state depends only on the state and the torque, because MuJoCo's solver
+/// starts each time step without a memory of earlier steps.
+///
+/// The goal is the option `goal`. With the option `goal_site` the goal is instead drawn for each
+/// episode: a pose that brings this site to a point of the x-y plane. The error is the largest
+/// distance of a joint from its goal position (angles the short way round [deg], slides [m]), or of
+/// a site from its position in the goal state [m].
 class MujocoPlant : public Plant {
  public:
-  /// @throws std::invalid_argument with the value, the rule and what helps, if options and model do
+  /// @throws std::invalid_argument with the value, the rule and the remedy if options and model do
   ///         not fit together
   MujocoPlant(std::shared_ptr<const MujocoModel> model, const MujocoOptions& options);
   ~MujocoPlant() override;
@@ -52,27 +57,29 @@ class MujocoPlant : public Plant {
 
   std::shared_ptr<const MujocoModel> model_;
   std::unique_ptr<const MujocoPhysics> physics_;
-  int num_frames_;                 // of a time step
-  Eigen::VectorXd start_normal_;   // standard deviation of this part of the start
-  Eigen::VectorXd start_uniform_;  // half-width of that one
-  std::vector<int> error_joints_;  // empty: error_sites_ count
+  int num_frames_;                 // number of physics steps in one time step
+  Eigen::VectorXd start_normal_;   // standard deviation of the normal part of the initial state
+  Eigen::VectorXd start_uniform_;  // half-width of the uniform part of the initial state
+  std::vector<int> error_joints_;  // empty: the error is that of error_sites_
   std::vector<Place> error_sites_;
   std::vector<Place> visible_sites_;  // empty: all bodies
-  std::vector<Place> goal_site_;      // none: the goal is always the same
+  std::vector<Place> goal_site_;      // empty: all episodes have the same goal
   std::vector<double> goal_distance_;
-  std::unique_ptr<Renderer> image_;  // what the learner sees
-  std::unique_ptr<Renderer> view_;   // what people see
-  const Reward* reward_;             // null: none
-  Eigen::VectorXd reward_scale_;     // torque of each motor that is a control of 1
+  std::unique_ptr<Renderer> image_;  // draws the learner's images
+  std::unique_ptr<Renderer> view_;   // draws the large images for people
+  const Reward* reward_;             // null: the plant has no reward
+  Eigen::VectorXd reward_scale_;     // torque of each motor at a control of 1 [N m or N]
 };
 
-/// Draws a few poses of a plant, which takes as long as opening the renderer.
-/// @throws std::invalid_argument with the likely cause if the images of all poses are equal.
-///         Nothing is checked, and nothing thrown, where OpenGL cannot draw.
+/// Draws a few poses of a plant and requires that their images differ. Takes about as long as
+/// opening the renderer.
+/// @throws std::invalid_argument with the likely cause if the images of all poses are equal. Checks
+///         nothing and throws nothing if OpenGL cannot draw on this machine.
 void requireVisible(const std::shared_ptr<const MujocoModel>& model, const MujocoOptions& options);
 
-/// The options with what the files say where they are silent: limits of motors, and the digest.
-/// @throws std::invalid_argument if the digest is that of other files, or as MujocoPlant
+/// Fills in the options that the user left empty from the model: limits of motors, and the digest.
+/// @throws std::invalid_argument if the option `model_digest` differs from the digest of the files,
+///         or as the constructor of MujocoPlant
 MujocoOptions completed(MujocoOptions options, const MujocoModel& model);
 
 }  // namespace ddm

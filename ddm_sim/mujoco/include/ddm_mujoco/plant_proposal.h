@@ -1,4 +1,4 @@
-// A plant for a model file that has none yet: what the file says, and a proposal for the rest.
+// Proposes plant options for a model file that has no plant file yet.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -14,16 +14,19 @@
 
 namespace ddm {
 
-/// A joint as a proposal sees it. Positions are in rad or m.
+/// A joint with the properties that a proposal needs. Positions are in rad or m.
 struct ModelJoint {
   std::string name;
   JointKind kind = JointKind::kAngle;
   bool limited = false;
-  double lower = 0.0;  ///< limits of the file; of a joint without limits those of the poses
+  /// Limits of the file. A joint without limits has the range of the proposed poses.
+  double lower = 0.0;
   double upper = 0.0;
-  double shown_lower = 0.0;  ///< the part of them that the camera shows
+  /// Part of the range that the camera shows. Equal to the range for all joints but long slides.
+  double shown_lower = 0.0;
   double shown_upper = 0.0;
-  double effort = 0.0;  ///< limit of a motor here by the file [N m, N]; 0: the file does not say
+  /// Limit of a motor at this joint in the file [N m or N]; 0: the file has no limit.
+  double effort = 0.0;
 
   bool isHinge() const { return kind == JointKind::kAngle; }
   bool shownInPart() const { return limited && (shown_lower > lower || shown_upper < upper); }
@@ -34,33 +37,36 @@ struct PlantProposal {
   MujocoOptions options;
   int feature_dim = 2;  ///< proposed model/feature_dim
   std::vector<ModelJoint> joints;
-  std::vector<std::string> motors;  ///< joints that have a motor, also by actuators of the file
-  std::map<std::string, std::string> reasons;  ///< by key of the block: how its value came about
-  std::vector<std::string> to_set;             ///< keys that a person has to decide
-  std::vector<Eigen::VectorXd> poses;          ///< random states at rest
+  std::vector<std::string> motors;  ///< joints that have a motor, also through the file's actuators
+  /// For each key of the block `plant`: why the key has this value.
+  std::map<std::string, std::string> reasons;
+  std::vector<std::string> to_set;     ///< keys that a person has to decide
+  std::vector<Eigen::VectorXd> poses;  ///< random states at rest
 };
 
-/// Proposes every key that a plant of this model needs. The camera sees all poses that the joints'
-/// limits allow, and looks along the axes of parallel hinges.
-/// @param motors      joints that have a motor; empty: the joints of the file's actuators, without
-///                    any those of its transmissions, those with an effort limit, or the only joint
-/// @param max_torque  limits of the motors; empty: the file's, or estimated from gravity and inertia
-/// @throws std::invalid_argument naming what does not fit the model, or the joints that could have a
-///         motor if the file does not say which one or two have one
+/// Proposes a value for every key that a plant of this model needs. The proposed camera sees all
+/// poses within the joints' limits and looks along the axes of parallel hinges.
+/// @param motors      joints that have a motor. Empty: the joints of the file's actuators. If the
+///         file has no actuators, the joints of its transmissions, else the joints with an effort
+///         limit, else the only joint
+/// @param max_torque  limits of the motors. Empty: the limits of the file, or estimates from
+///         gravity and inertia
+/// @throws std::invalid_argument naming an argument that does not fit the model, or the joints that
+///         could have a motor if the file does not say which one or two joints have a motor
 /// @throws std::range_error with MuJoCo's reason if the simulation is unstable
 PlantProposal proposePlant(const std::shared_ptr<const MujocoModel>& model,
                            const std::vector<std::string>& motors,
                            const std::vector<double>& max_torque);
 
-/// How a plant behaves and what its image shows.
+/// Speeds of a plant in a simulation, and how much its images change.
 struct PlantCheck {
-  double still_speed = 0.0;         ///< fastest joint in 2 s without torque [rad/s, m/s]
-  double random_speed = 0.0;        ///< and under random torques
-  int changed_pixels = 0;           ///< that differ between two poses, median
-  std::vector<std::string> unseen;  ///< joints that can move without a change of the image
+  double still_speed = 0.0;         ///< largest speed of a joint in 2 s without torque [rad/s, m/s]
+  double random_speed = 0.0;        ///< largest speed under random torques [rad/s, m/s]
+  int changed_pixels = 0;           ///< pixels that differ between two poses (median) [-]
+  std::vector<std::string> unseen;  ///< joints whose motion does not change the image
 };
 
-/// @param plant  of the proposal; its state is changed
+/// @param plant  plant with the proposed options; the call changes its state
 /// @throws std::range_error with MuJoCo's reason if the simulation is unstable
 PlantCheck checkPlant(const PlantProposal& proposal, Plant* plant);
 

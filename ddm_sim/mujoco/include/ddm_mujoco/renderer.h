@@ -1,4 +1,4 @@
-// Draws the scene of a MuJoCo model without a screen.
+// Class Renderer: draws the scene of a MuJoCo model without a screen.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -16,56 +16,64 @@ namespace ddm {
 class EglContext;
 class Scene;
 
-/// How a scene is drawn. The camera is one of the model (`camera`), or stands where the model has
-/// none (`position`).
+/// How a scene is drawn. The camera is either one of the model (`camera`), or an additional one at
+/// a given position (`position`, `look_at`).
 struct RenderOptions {
-  std::string camera;            ///< name in the model; empty: its first one
-  std::vector<double> position;  ///< of a camera that the model does not have [m]    [0 or 3]
-  std::vector<double> look_at;   ///< the point in the middle of its image [m]        [0 or 3]
+  std::string camera;            ///< name of a camera in the model; empty: its first camera
+  std::vector<double> position;  ///< position of an additional camera [m]           [0 or 3]
+  std::vector<double> look_at;   ///< point in the middle of that camera's image [m] [0 or 3]
   int width = 51;                ///< [pixels]
   int height = 51;               ///< [pixels]
-  bool colour = false;           ///< else grey
+  bool colour = false;           ///< true: RGB, false: grey
   int samples = 0;               ///< 0, or 4: edges are averaged over four points of a pixel
-  int supersampling = 1;         ///< the image is drawn so many times larger, then averaged
-  bool for_people = false;       ///< also show the geoms and sites of group kPeopleGroup
+  int supersampling = 1;         ///< factor by which the image is drawn larger before averaging
+  bool for_people = false;       ///< also draws the geoms and sites of group kPeopleGroup
 
-  // Disturbances of the scene: shares of the largest change. 0: none, 0.1: easy.
-  double camera_shift = 0.0;  ///< the camera goes around the point it looks at, and turns
-  double colour_shift = 0.0;  ///< of each thing, texture and sky
+  // Disturbances of the scene, as shares of the largest change. 0: no disturbance, 0.1: easy.
+  /// Motion of the camera around the point that it looks at, and rotation.
+  double camera_shift = 0.0;
+  /// Change of the colour of each geom, site, material, texture and sky.
+  double colour_shift = 0.0;
 
-  static constexpr double kFieldOfView = 45.0;  ///< vertical angle of a camera at `position` [deg]
+  /// Vertical field of view of a camera at `position` [deg]
+  static constexpr double kFieldOfView = 45.0;
   static constexpr int kPeopleGroup = 4;
 };
 
-/// One camera's images of one model. The same state gives the same bytes, each time, on each
-/// thread and in each process, with one version of Mesa and one of MuJoCo.
+/// Draws the images of one camera in one model. Equal states give equal bytes in each call, thread
+/// and process, as long as the versions of Mesa and MuJoCo are the same.
 ///
-/// A grey value is that of the colour image's bytes, as image_codec turns colour into grey:
+/// A grey image is computed from the bytes of the colour image, in the same way as image_codec
+/// computes grey from colour:
 ///
 ///   grey = (9798 red + 19235 green + 3735 blue + 16384) div 32768        (0.299, 0.587, 0.114)
 ///
-/// Software draws (Mesa's llvmpipe) unless the environment variable LIBGL_ALWAYS_SOFTWARE is 0.
+/// The CPU draws (Mesa's llvmpipe) unless the environment variable LIBGL_ALWAYS_SOFTWARE is 0.
 ///
-/// Geoms of the groups 0 to 2 are drawn, as in MuJoCo's viewer. If nothing that moves is among
-/// them, those of the first other group with something that moves are drawn, too: a file that has
-/// collision shapes alone is not invisible.
+/// The renderer draws the geoms of the groups 0 to 2, like MuJoCo's viewer. If none of these geoms
+/// moves, the renderer also draws the first other group with a moving geom, so that a file with
+/// only collision shapes is not invisible.
 ///
-/// Nothing is drawn, and no context made, before the first draw().
+/// The first call of draw() creates the OpenGL context.
 class Renderer {
  public:
-  /// @param options  valid, see MujocoOptions::problems()
-  /// @throws std::invalid_argument if the model has no such camera, naming those that it has
+  /// @param options  valid options, see MujocoOptions::problems()
+  /// @throws std::invalid_argument with the names of the model's cameras if the model has no camera
+  ///         with the name in the options
   Renderer(const std::shared_ptr<const mjModel>& model, const RenderOptions& options);
   ~Renderer();
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  /// What the camera sees; the image has no cover. Any thread may call it, one draws at a time.
-  /// @param data  positions of this state: after mj_forward(), or mj_kinematics() and mj_camlight()
-  /// @throws std::runtime_error naming what fails: no EGL, an image that the driver cannot draw
+  /// Draws the rendered image of the camera; the cover (Picture) stays empty. Several threads may
+  /// call this function; one thread draws at a time.
+  /// @param data  positions of the state, after mj_forward(), or after mj_kinematics() and
+  ///         mj_camlight()
+  /// @throws std::runtime_error naming the step that fails: EGL is missing, or the driver cannot
+  ///         draw an image of this size
   Picture draw(const mjData& data);
 
-  /// Where the camera is in this state; draws nothing.
+  /// Position and lens of the camera in this state. Draws nothing.
   CameraModel camera(const mjData& data);
 
  private:
@@ -79,21 +87,23 @@ class Renderer {
   mjvOption shown_;
   mjvScene drawn_;
   mjrContext gpu_;
-  std::unique_ptr<EglContext> context_;  ///< with gpu_ in it; none: nothing has been drawn yet
-  std::vector<std::uint8_t> pixels_;     ///< as drawn, kept for the next time
+  /// OpenGL context that holds gpu_; null before the first image.
+  std::unique_ptr<EglContext> context_;
+  /// Bytes of the last drawn image, kept to avoid a new allocation.
+  std::vector<std::uint8_t> pixels_;
   std::mutex mutex_;
 };
 
-/// What draws in this process, GL_RENDERER and GL_VERSION. Pixels differ from one driver to
-/// another.
+/// GL_RENDERER and GL_VERSION of the driver that draws in this process. Pixels differ between
+/// drivers.
 /// @throws std::runtime_error naming the step of EGL that fails
 std::string openGlRenderer();
 
-/// Whether a geom belongs to a body that a joint moves, and is drawn: not transparent, and in one
-/// of the groups that a Renderer shows.
+/// Whether a geom belongs to a body that a joint moves and is drawn: it is not transparent, and its
+/// group is one that a Renderer shows.
 bool isDrawnAndMoves(const mjModel& model, int geom);
 
-/// Grey of a colour image, byte by byte as above; a grey one as it is.
+/// Grey image of a colour image by the formula above. Returns a grey image unchanged.
 Picture greyOf(const Picture& picture);
 
 }  // namespace ddm

@@ -1,4 +1,4 @@
-// Rewards of standard tasks, by name.
+// Rewards of the DeepMind Control Suite, by name.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -8,14 +8,14 @@
 
 namespace ddm {
 
-/// What the reward of one physics frame depends on.
+/// Inputs of the reward of one physics step.
 struct RewardInputs {
-  Eigen::VectorXd state;    ///< after the frame: positions, then rates
-  Eigen::VectorXd control;  ///< that led to it, each torque by the motor's limit, in [-1, 1]
+  Eigen::VectorXd state;    ///< state after the physics step: positions, then rates
+  Eigen::VectorXd control;  ///< torques of the step, divided by the motors' limits, in [-1, 1]
   Eigen::VectorXd goal;     ///< state to reach
 };
 
-/// A reward and the plant it is for.
+/// A reward function and the dimensions of the plant that it is made for.
 struct Reward {
   std::string name;
   int num_joints;
@@ -23,9 +23,9 @@ struct Reward {
   double (*value)(const RewardInputs&);  ///< in [0, 1]
 };
 
-/// The tasks of the DeepMind Control Suite: pendulum_swingup, cartpole_smooth,
-/// reacher_easy, reacher_hard, acrobot_smooth. The state is that of the suite's
-/// models; the target of the reacher is where the finger is at the goal.
+/// Rewards of these tasks of the DeepMind Control Suite: pendulum_swingup, cartpole_smooth,
+/// reacher_easy, reacher_hard, acrobot_smooth. The state has the order of the suite's models. The
+/// target of the reacher is the position of the finger in the goal state.
 const std::vector<Reward>& rewards();
 
 }  // namespace ddm

@@ -1,4 +1,4 @@
-// A picture as the message that a camera would publish.
+// Converts a rendered image to the message of a camera.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -12,12 +12,13 @@
 
 namespace ddm {
 
-/// NAME_optical_frame, as cameras are called in ROS; "camera" for a picture without a real one.
+/// Name of the optical frame by the ROS convention: NAME_optical_frame, or "camera" if the renderer
+/// has no pinhole model.
 inline std::string opticalFrame(const std::optional<CameraModel>& camera) {
   return camera ? camera->name + "_optical_frame" : "camera";
 }
 
-/// mono8 or rgb8, without padding.
+/// A mono8 or rgb8 message without padding.
 inline sensor_msgs::Image imageMessage(const Picture& picture, const ros::Time& stamp,
                                        const std::string& frame = "camera") {
   sensor_msgs::Image image;

@@ -1,4 +1,4 @@
-// The block `plant` of any plant, ours or another package's, and the file that describes it.
+// Reads the block `plant` of a configuration, and finds the file that describes a plant.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -12,22 +12,24 @@
 
 namespace ddm {
 
-/// Reads the block `plant`. Its key `type` (default: pendulum) names the plant; with a slash it is
-/// PACKAGE/CLASS of another package, which is loaded and stays loaded until the program ends.
-/// @throws std::invalid_argument naming what there is, if there is no such plant
-/// @throws std::runtime_error if its library cannot be loaded
+/// Reads the block `plant`. The key `type` (default: pendulum) names the plant. PACKAGE/CLASS names
+/// a plugin of another package, which is loaded and stays loaded until the program ends.
+/// @throws std::invalid_argument with the available plants if there is no such plant
+/// @throws std::runtime_error if the library of the plugin cannot be loaded
 std::shared_ptr<const PlantPlugin> readPlant(ParamReader* reader);
 
-/// The plant that configuration files describe on top of ddm_sim's defaults; later files win.
-/// @throws std::exception with what is wrong with them, or as above
+/// Reads the plant from configuration files, which are merged with ddm_sim's defaults; later files
+/// replace values of earlier files.
+/// @throws std::exception with the problems of the files, or as readPlant()
 std::shared_ptr<const PlantPlugin> readPlantFiles(std::vector<std::string> files);
 
-/// Whether a plant is named by its file, not by a name in a package.
+/// Whether the name of a plant is the path of its file, and not a name within a package.
 bool namesPlantFile(const std::string& name);
 
-/// The file that describes a plant: config/NAME.yaml of ddm_sim, for PACKAGE/NAME of that package,
-/// or the file itself, if the name ends in .yaml and there is one.
-/// @throws std::invalid_argument naming what there is, if there is no such file or package
+/// Returns the path of the file that describes a plant: config/NAME.yaml of ddm_sim; for
+/// PACKAGE/NAME, config/NAME.yaml of that package; or the name itself if it is the path of an
+/// existing .yaml file.
+/// @throws std::invalid_argument with the available plants if there is no such file or package
 std::string plantFile(const std::string& name);
 
 }  // namespace ddm

@@ -1,4 +1,4 @@
-// A plant as a configuration describes it: how plants register, ours and those of other packages.
+// Interface by which plants of this package and of other packages register.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -11,19 +11,20 @@
 
 namespace ddm {
 
-/// Reads the block `plant` of one kind of plants, and makes them. Derive from PlantPluginOf.
+/// Reads the block `plant` for one type of plant, and makes plants of this type. Derive from
+/// PlantPluginOf.
 class PlantPlugin : public PlantMaker {
  public:
-  /// Reads all keys; what is wrong with them stays with the reader.
+  /// Reads all keys. The reader collects the problems.
   virtual void read(ParamReader* reader) = 0;
 
   virtual YAML::Node block() const = 0;  ///< effective values of all keys
 
-  /// The driver that draws the images, if their pixels depend on one; else empty.
+  /// Name of the graphics driver if the pixels of the images depend on it, otherwise empty.
   virtual std::string renderer() const { return ""; }
 };
 
-/// The plugin of a plant with these constructor and options:
+/// Plugin of a plant whose constructor takes an options struct:
 ///
 ///   struct CartOptions : ddm::PlantOptions { ... visit() ... problems() ... };
 ///   explicit Cart(const CartOptions& options);

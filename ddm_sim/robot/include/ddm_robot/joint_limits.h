@@ -1,4 +1,4 @@
-// Limits of a robot's joints, and whether its reports keep them.
+// Checks the joint states of a robot against limits.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -10,28 +10,29 @@
 
 namespace ddm {
 
-/// What a node reports of some joints (sensor_msgs/JointState), and when the report arrived.
+/// Joint states in one message (sensor_msgs/JointState), with the time of arrival.
 struct JointReport {
-  SteadyTime arrival{};
-  Stamp clock{0};                  ///< of this machine when the report arrived, since its epoch
-  Stamp stamp{0};                  ///< when the joints were measured
-  std::string reporter;            ///< name of the node
-  std::vector<std::string> names;  ///< of the joints, may be empty
-  std::vector<double> positions;   ///< as many as joints, or none [rad or m]
-  std::vector<double> velocities;  ///< as many as joints, or none [rad/s or m/s]
+  SteadyTime arrival{};            ///< arrival of the message
+  Stamp clock{0};                  ///< clock of this machine at the arrival, since its epoch
+  Stamp stamp{0};                  ///< time of the measurement
+  std::string reporter;            ///< node that published the message
+  std::vector<std::string> names;  ///< names of the joints; may be empty
+  std::vector<double> positions;   ///< one per joint, or empty [rad or m]
+  std::vector<double> velocities;  ///< one per joint, or empty [rad/s or m/s]
 };
 
-/// Compares what the robot reports of its joints (sensor_msgs/JointState) with
-/// `robot/position_limits` and `robot/speed_limit`.
+/// Compares the joint states of a robot (sensor_msgs/JointState) with `robot/position_limits` and
+/// `robot/speed_limit`.
 ///
-/// Joints are found by `robot/joints`; a message without any of them is ignored, since several
-/// nodes may report, each some joints. Only where a single joint has limits may its name be left
-/// out; then a message must have exactly one joint. What is needed and is missing, or is not finite,
-/// is a violation. So is a joint that two nodes report: one of them may repeat what the other said
-/// before it died.
+/// `robot/joints` names the joints with limits. A message without any of these joints is ignored,
+/// since several nodes may publish the states of different joints. If only one joint has limits,
+/// its name may be left out; each message must then contain exactly one joint. A required value
+/// that is missing or not finite is a violation. A joint that two nodes report is also a violation,
+/// because one of the nodes may repeat a state of the other node after the other node has ended.
 ///
-/// A report counts from the moment when the joints were measured, not when it arrived: a report
-/// whose stamp is missing, is older than kSilence, repeats, or jumps leaves its joints silent.
+/// The age of a report counts from the time of measurement and not from its arrival. If the stamp
+/// of a report is missing, older than kSilence, repeated, or jumps, the joints of the report count
+/// as silent.
 class JointLimits {
  public:
   explicit JointLimits(const RobotOptions& options);
@@ -41,23 +42,27 @@ class JointLimits {
 
   void take(const JointReport& report);
 
-  /// Another torque than before acts from now on.
+  /// Call this function when a new torque begins to act. frozen() counts these calls.
   void torqueChanges();
 
-  /// What the last reports violate; empty: nothing.
+  /// Describes the limits that the last reports violate; empty if there is no violation.
   std::string violation() const;
 
-  /// Which joint has not been measured for kSilence, and why as far as it is known; empty: none.
+  /// Describes a joint that has not been measured for kSilence, and the reason if it is known;
+  /// empty if there is no such joint.
   std::string silence(SteadyTime now) const;
 
-  /// Which joint has reported exactly the same position while kFrozenTorques torques acted one after
-  /// the other, as a driver does that repeats an old value; empty: none. No reason to stop: a robot
-  /// may also be held.
+  /// Describes a joint whose reported position stayed exactly the same during kFrozenTorques
+  /// consecutive torques, as if its driver repeated an old value; empty if there is no such joint.
+  /// This is a warning and not a fault, because a person may hold the robot.
   std::string frozen() const;
 
-  /// Slower than all robots report, and short enough for a motor that nobody watches.
+  /// Time without a measurement after which a joint counts as silent. Longer than the period of the
+  /// joint states of all robots, and short enough that a motor may run for this time without joint
+  /// states.
   static constexpr std::chrono::milliseconds kSilence{200};
-  /// A new reporter within this time is a second one; later, it has replaced the other.
+  /// If a second node reports a joint within this time after the first node, the joint has two
+  /// reporters; after this time, the second node has replaced the first.
   static constexpr std::chrono::seconds kTakeover{1};
   static constexpr int kFrozenTorques = 10;
 
@@ -65,18 +70,18 @@ class JointLimits {
   struct Joint {
     std::string name;
     StampCheck stamps{toSeconds(kSilence), "joint_states driver", "a joint state"};
-    std::string refusal;  // of the last report, for its stamp
+    std::string refusal;  // why the stamp of the last report was refused
     bool has_position_limits = false;
     bool has_speed_limit = false;
     double lower = 0.0;  // [rad or m]
     double upper = 0.0;
     double speed_limit = 0.0;  // [rad/s or m/s]
-    SteadyTime heard{};        // when it was measured last
+    SteadyTime heard{};        // time of the last measurement
     double position = 0.0;     // in the last report [rad or m]
     int torques_since_change = 0;
-    std::string reporter;    // of the last report
-    std::string rival;       // the one it was contested with
-    SteadyTime contested{};  // when two nodes last reported it
+    std::string reporter;    // node of the last report
+    std::string rival;       // the other node that reported the joint
+    SteadyTime contested{};  // last time at which two nodes reported the joint
     std::string violation;
   };
 

@@ -1,4 +1,4 @@
-// Stamps of a sensor: whether they can be trusted, and which images of a camera are acted on.
+// Checks the stamps of a sensor, and selects the camera images for the control loop.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -10,13 +10,14 @@
 
 namespace ddm {
 
-// Two kinds of time, which cannot be mixed up: one guards a motor, the other pairs messages.
+// The two types of time cannot be mixed up: deadlines of the motors use SteadyTime, and the pairing
+// of messages uses Stamp.
 
-/// Of the monotonic clock, which nobody can set: all deadlines of the motor.
+/// Time of the monotonic clock, which cannot be set. All deadlines of the motors use it.
 using SteadyTime = std::chrono::steady_clock::time_point;
 
-/// Header stamp, since the epoch of the camera's clock: pairs an image with its torque and chooses
-/// the images that are acted on. It may shorten a deadline, never extend one.
+/// Header stamp, since the epoch of the camera's clock. Stamps pair an image with its torque and
+/// select the images for the control loop. A stamp can shorten a deadline but never extend it.
 using Stamp = std::chrono::nanoseconds;
 
 inline double toSeconds(std::chrono::nanoseconds time) {
@@ -28,50 +29,52 @@ inline std::chrono::nanoseconds fromSeconds(double seconds) {
       std::chrono::duration<double>(seconds));
 }
 
-/// Refuses images whose stamps jump, and finds out how long an accepted one was on its way.
+/// Refuses images whose stamps jump, and estimates the delay of accepted images.
 ///
 ///   offset = stamp - arrival
 ///
-/// A transport can only delay an image, which lowers its offset; clocks that drift apart change it
-/// slowly. An offset that is suddenly higher than all before means that the camera's clock was set
-/// forward. Refused are:
+/// A transport can only delay an image, which lowers its offset. Clocks that drift apart change the
+/// offset slowly. If an offset is suddenly higher than all previous offsets, the camera's clock was
+/// set forward. The following images are refused:
 ///
 ///   ahead         offset > highest offset so far + dt
 ///   out of order  stamp <= stamp of the last image that was accepted
 ///   not set       for the first image: stamp and the clock of this machine differ by more than dt
 ///
-/// The tolerance is one dt because a stamp that is ahead by less hides at most one dt of the images
-/// after it, which costs no more than a lost image. An image that comes late is accepted, however
-/// late, and so is the next one in time. A refused image changes nothing here: as soon as the
-/// camera's clock is right again its images are accepted. A clock that stays wrong needs restart().
+/// The tolerance is one dt because a stamp that is ahead by less than dt hides at most one dt of
+/// the following images, which is no worse than a lost image. Late images are accepted, however
+/// late they are, and so are the images after them. A refused image does not change the stored
+/// offsets: as soon as the camera's clock is correct again, its images are accepted. If the clock
+/// stays wrong, call restart().
 ///
-/// Joint states are judged in the same way.
+/// Joint states are checked in the same way.
 class StampCheck {
  public:
-  /// @param dt      tolerance, > 0: one time step for images [s]
-  /// @param sensor  for messages: what sets the stamps
-  /// @param item    for messages: what carries the stamps
+  /// @param dt      tolerance, > 0; one time step for images [s]
+  /// @param sensor  the device that sets the stamps, for messages
+  /// @param item    the data with the stamps, for messages
   explicit StampCheck(double dt, std::string sensor = "camera", std::string item = "an image")
       : dt_(fromSeconds(dt)), sensor_(std::move(sensor)), item_(std::move(item)) {}
 
   /// Compares a stamp with the clock of this machine.
-  /// @param clock  of this machine when the image arrived, since its epoch
-  /// @return       what is wrong; empty: they differ by no more than the tolerance
+  /// @param clock  clock of this machine at the arrival of the image, since its epoch
+  /// @return       description of the difference; empty if it is within the tolerance
   std::string compare(Stamp clock, Stamp stamp) const;
 
-  /// To be called for each image.
-  /// @return why it is refused; empty: accepted
+  /// Checks the stamp of an image. Call this function for each image.
+  /// @return the reason of the refusal; empty if the image is accepted
   std::string take(SteadyTime arrival, Stamp clock, Stamp stamp);
 
-  /// When the camera took the last image that was accepted: its arrival, less the time that it was
-  /// on its way longer than usual. The usual time is the median over recent images and grows no
-  /// faster than clocks drift, so images over a congested link stay late for as long as that lasts.
+  /// Estimated time at which the camera took the last accepted image: its arrival minus the part of
+  /// its delay that exceeds the usual delay. The usual delay is the median over recent images and
+  /// grows no faster than clocks drift. Images therefore count as late for as long as a congested
+  /// link delays them.
   SteadyTime taken() const { return taken_; }
 
-  /// The next image counts as the first.
+  /// Forgets all stamps: the next image counts as the first.
   void restart();
 
-  /// Images refused since the start.
+  /// Number of refused images since construction.
   int numRefused() const { return num_refused_; }
 
  private:
@@ -80,42 +83,44 @@ class StampCheck {
   std::chrono::nanoseconds dt_;
   std::string sensor_;
   std::string item_;
-  std::optional<Stamp> last_;   // empty: none was accepted yet
-  Stamp highest_{0};            // offset
-  std::deque<Stamp> offsets_;   // of recent images
-  std::optional<Stamp> usual_;  // offset
+  std::optional<Stamp> last_;   // stamp of the last accepted image; empty before the first
+  Stamp highest_{0};            // highest offset so far
+  std::deque<Stamp> offsets_;   // offsets of recent images
+  std::optional<Stamp> usual_;  // usual offset
   SteadyTime arrival_;
   SteadyTime taken_;
   int num_refused_ = 0;
 };
 
-/// Chooses the images of a camera that are acted on, because the camera has a rate of its own and
-/// the loop has its time step: of all images the one that comes nearest to dt after the last one.
+/// Selects the images for the control loop, because the rate of the camera differs from the rate of
+/// the loop. Selects the image whose stamp is nearest to dt after the last selected image.
 ///
-/// An image is judged when it comes, so the chosen one is the newest and not a moment old. With dt a
-/// whole multiple of the camera's period T all steps are equally long, whatever the jitter of stamps
-/// below T / 2; otherwise they are round(dt / T) T, still equally long.
+/// The decision is made when an image arrives, so the selected image is always the newest one. If
+/// dt is a multiple of the camera's period T, all steps have the same length, as long as the jitter
+/// of the stamps is below T / 2. Otherwise the steps have the length round(dt / T) T.
 class ImagePicker {
  public:
   /// @param dt  time step, > 0 [s]
   explicit ImagePicker(double dt) : dt_(dt) {}
 
-  /// To be called for each image.
-  /// @return whether to act on it; never for one that is not newer than all since restart()
+  /// Decides on an image. Call this function for each image.
+  /// @return whether the image is selected; never true for an image that is not newer than all
+  ///         images since restart()
   bool pick(Stamp stamp);
 
-  /// The next image will be picked, whatever its stamp.
+  /// Forgets the last stamp, so that the next image is selected, whatever its stamp is. The
+  /// estimate of the camera's period is kept.
   void restart() { last_image_.reset(); }
 
-  /// Time between images that are picked [s]; 0 if it is not known yet.
+  /// Time between selected images [s]; 0 if it is not known yet.
   double step() const;
 
  private:
   double dt_;
-  std::optional<Stamp> last_image_;  // empty: none since restart()
+  std::optional<Stamp> last_image_;  // stamp of the last image; empty after restart()
   Stamp last_pick_{0};
-  std::deque<Stamp> intervals_;  // between the latest images
-  double period_ = 0.0;          // T, their median: a lost image or a pause must not count [s]
+  std::deque<Stamp> intervals_;  // between the most recent images
+  double period_ = 0.0;          // T [s]; the median, which a lost image or a pause does not change
 };
 
 }  // namespace ddm

@@ -1,4 +1,4 @@
-// The gate between a controller and the motors: which torque they get, and when it is zero.
+// The gate between a controller and the motors: decides which torque the motors receive.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -11,29 +11,32 @@
 
 namespace ddm {
 
-/// Lets through torques that answer the last images in time, within the limits of each motor.
+/// Passes torques on to the motors if they answer the last images in time, within the limits of
+/// each motor.
 ///
-/// Zero torque to every motor, at once and not at the slew rate, in each of these cases:
+/// Sets the torque of every motor to zero, immediately and without the slew rate limit, in each of
+/// these states:
 ///
-///   kStopped        the motors are off: at the start, after stop(), after a fault that latches
-///   kResetting      the robot is on its way to its start
-///   kWaiting        no trial is under way
-///   kImagesStopped  a trial is under way, and no image came for two dt
-///   kLate           an image had no answer within dt. A torque that comes later does not act
-///   kNoController   a trial is under way, and no node publishes torques
+///   kStopped        the motors are off: initially, after stop(), and after a latched fault
+///   kResetting      the robot moves to its initial state
+///   kWaiting        no episode is running
+///   kImagesStopped  an episode is running, and no image arrived for two dt
+///   kLate           an image had no torque within dt; a later torque does not act
+///   kNoController   an episode is running, and no node publishes torques
 ///   kHeldTooLong    the last torque has acted for robot/max_hold
 ///   kJointsSilent   the joints have limits, and joint_states does not report them
 ///
-/// The last five end by themselves with the next torque in time. Four faults latch: a torque that
-/// is not one finite number for each motor, a second publisher of torques, no subscriber of the
-/// efforts in a trial, and a joint beyond its limits, or reported by two nodes, when a torque acts
-/// or is about to. They switch the motors off until arm(), which is refused while the fault is
-/// there. Between trials, where no torque acts, joints may be moved beyond their limits.
+/// The last five states end with the next torque in time. Four faults are latched: a torque that is
+/// not one finite number for each motor; a second publisher of torques; no subscriber of the
+/// efforts during an episode; and a joint that is beyond its limits, or that two nodes report,
+/// while a torque acts or is about to act. A latched fault switches the motors off until arm(),
+/// which refuses as long as the fault is present. Between episodes no torque acts, so joints may be
+/// moved beyond their limits.
 ///
-/// Time is that of the monotonic clock: whatever stamps say, a motor that hears nothing stops.
+/// All deadlines use the monotonic clock, so wrong stamps cannot keep a motor running.
 ///
-/// A trial begins with the first torque in time after arm() and endReset(), and ends with
-/// endTrial(). In kFollowing a torque acts until the next.
+/// An episode begins with the first torque in time after arm() and endReset(), and ends with
+/// endTrial(). In the state kFollowing, a torque acts until the next torque.
 class TorqueGate {
  public:
   enum class State {
@@ -50,10 +53,10 @@ class TorqueGate {
 
   explicit TorqueGate(const RobotOptions& options);
 
-  /// Lets torques through from now on.
-  /// @return what is in the way; empty: armed
+  /// Switches the motors on.
+  /// @return the reason of a refusal; empty if the motors are on
   std::string arm(SteadyTime now);
-  /// A fault that is there now: the motors cannot be armed; empty: none.
+  /// Describes a present fault that prevents arm(); empty if there is none.
   std::string fault(SteadyTime now) const;
   /// Switches the motors off.
   void stop(const std::string& reason);
@@ -62,38 +65,41 @@ class TorqueGate {
   void endReset();
   void endTrial();
 
-  /// An image is shown to the controller.
-  /// @param taken  when the camera took it, at the latest now: its torque is due within dt of it
-  /// @param stamp  by which its torque will name it
+  /// Records that an image was published to the controller.
+  /// @param taken  time at which the camera took the image, not after now; its torque is due within
+  ///         dt of this time
+  /// @param stamp  stamp of the image, which its torque carries
   void showImage(SteadyTime taken, Stamp stamp);
 
-  /// A torque has come.
-  /// @param stamp   of the image that it answers
-  /// @param torque  [N m]                                                          [numMotors]
-  /// @return        whether it acts
+  /// Handles a torque that has arrived.
+  /// @param stamp   stamp of the image that the torque answers
+  /// @param torque  [N m]                                                               [numMotors]
+  /// @return        whether the torque acts
   bool takeTorque(SteadyTime now, Stamp stamp, const std::vector<double>& torque);
 
-  /// Images that were shown, and that no torque answered in time, since the last call. Each image
-  /// has one of both in the end, a torque that acts or a place here.
+  /// Returns the images since the last call that no torque answered in time. Each published image
+  /// has either a torque that acts or an entry here.
   std::vector<Stamp> takeUnanswered();
 
-  /// What the motors follow, within their bounds: the last torque that acts, zeros if none does
-  /// [N m]                                                                           [numMotors]
+  /// The torque that the motors follow, within their bounds: the last torque that acts, or zeros if
+  /// no torque acts [N m]                                                               [numMotors]
   const std::vector<double>& target() const { return target_; }
 
-  /// What joint_states reports, as in JointLimits::take().
+  /// Handles a message of joint_states, see JointLimits::take().
   void takeJoints(const JointReport& report);
-  /// A joint whose position does not change, see JointLimits::frozen().
+  /// Describes a joint whose position does not change, see JointLimits::frozen().
   std::string frozenJoint() const { return joints_.frozen(); }
 
-  /// How many nodes publish torques at present. More than one is a fault; without one, a torque ends.
+  /// Sets the number of nodes that publish torques. More than one is a fault; zero ends the current
+  /// torque.
   void setPublishers(int num_publishers);
 
-  /// How many nodes subscribe to the efforts. Without one, no torque can act: a fault.
+  /// Sets the number of nodes that subscribe to the efforts. Zero is a fault, because no torque can
+  /// act.
   void setListeners(int num_listeners);
 
-  /// What the motors get now. To be called with times that never decrease.
-  /// @return torque [N m]                                                            [numMotors]
+  /// Returns the torque for the motors at this time. Times must not decrease from call to call.
+  /// @return torque [N m]                                                               [numMotors]
   const std::vector<double>& effort(SteadyTime now);
 
   State state() const { return state_; }
@@ -101,18 +107,18 @@ class TorqueGate {
   bool inTrial() const {
     return state_ != State::kStopped && state_ != State::kResetting && state_ != State::kWaiting;
   }
-  /// Whether the last torque has acted for (nearly) all of a time step, although it does not act now.
+  /// Whether the last torque has acted for at least 90 % of a time step and has ended since.
   bool heldForAStep() const { return state_ == State::kHeldTooLong && holds_for_a_step_; }
-  /// The state in words, with what brought it about.
+  /// Describes the state and its cause.
   std::string describe() const;
 
-  /// Images of trials that had no torque in time, since the start.
+  /// Number of images in episodes without a torque in time, since construction.
   int numMisses() const { return num_misses_; }
-  /// Torques in time, since the start.
+  /// Number of torques in time, since construction.
   int numAnswers() const { return num_answers_; }
 
  private:
-  /// An image whose torque may still come.
+  /// An image whose torque is not due yet.
   struct Pending {
     Stamp stamp;
     SteadyTime taken;
@@ -124,7 +130,7 @@ class TorqueGate {
   void setZero();
 
   std::vector<double> max_torque_;  // of each motor [N m]
-  std::vector<double> slew_rate_;   // of each motor; 0: any [N m/s]
+  std::vector<double> slew_rate_;   // of each motor; 0: no bound [N m/s]
   std::chrono::nanoseconds dt_;
   std::chrono::nanoseconds max_hold_;
   bool holds_for_a_step_;
@@ -137,9 +143,9 @@ class TorqueGate {
   std::deque<Pending> pending_;
   std::vector<Stamp> unanswered_;
   SteadyTime last_image_;
-  SteadyTime last_torque_;      // that acts
+  SteadyTime last_torque_;      // time of the last torque that acted
   std::vector<double> target_;  // [N m]
-  std::vector<double> effort_;  // what the motors got last [N m]
+  std::vector<double> effort_;  // torque that the motors received last [N m]
   SteadyTime last_effort_;
   int num_misses_ = 0;
   int num_answers_ = 0;
