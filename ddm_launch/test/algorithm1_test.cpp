@@ -72,17 +72,6 @@ TEST_F(ExperimentTest, EachTrialIsRunThenLearnedFromThenEvaluated) {
   EXPECT_EQ(shown_, (std::vector<size_t>{3, 4}));
 }
 
-TEST_F(ExperimentTest, TrialsGiveOneModelAndRowMoreThanTheirNumber) {
-  run();
-  EXPECT_EQ(numRows(), 3u);
-  for (const std::string trial : {"000", "001", "002"}) {
-    EXPECT_TRUE(fs::exists(file("trial_" + trial + "/model.ddm"))) << trial;
-    EXPECT_TRUE(fs::exists(file("evaluation_" + trial + "/torques.csv"))) << trial;
-  }
-  EXPECT_EQ(textOf(file("trial_002/model.ddm")), "model 2");
-  EXPECT_TRUE(fs::exists(file("summary.yaml")));
-}
-
 TEST_F(ExperimentTest, TheFirstTrialIsRandomTheOthersExploreAndEvaluationsAreGreedy) {
   configuration_.mpc.epsilon = 0.3;
   configuration_.mpc.hold_steps = 4;

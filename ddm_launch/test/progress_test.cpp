@@ -61,33 +61,6 @@ TEST_F(ProgressTest, EachFinishedTrialIsOneLineAndATerminalAlsoShowsABar) {
   }
 }
 
-TEST_F(ProgressTest, TheMovingLineIsWipedBeforeALineThatStays) {
-  const std::string text = textOf(/*live=*/true);
-  size_t begin = 0;
-  for (size_t end = text.find('\n'); end != std::string::npos; end = text.find('\n', begin)) {
-    const std::string line = text.substr(begin, end - begin);
-    const size_t wiped = line.rfind("\r\033[K");
-    EXPECT_EQ(line.find('[', wiped == std::string::npos ? 0 : wiped + 3), std::string::npos)
-        << line;
-    begin = end + 1;
-  }
-}
-
-TEST_F(ProgressTest, NoLineIsWiderThanATerminal) {
-  for (const bool live : {false, true}) {
-    std::istringstream lines(textOf(live));
-    rows_.clear();
-    for (std::string line; std::getline(lines, line);) {
-      for (size_t begin = 0; begin < line.size();) {
-        const size_t end = std::min(line.find('\r', begin + 1), line.size());
-        // the escape code has 4 characters
-        EXPECT_LE(end - begin, 80u + 4u) << line.substr(begin, end - begin);
-        begin = end;
-      }
-    }
-  }
-}
-
 TEST_F(ProgressTest, WithoutGroundTruthSuccessInFeaturesIsToldWithoutAnError) {
   for (const bool success : {true, false}) {
     std::ostringstream out;

@@ -213,13 +213,6 @@ TEST(RosDriverTest, NamesAServiceThatDoesNotAnswer) {
   EXPECT_TRUE(testing::names(errorOf(&driver, request), {"/start_recording", "answer", " 1 s"}));
 }
 
-TEST(RosDriverTest, WaitsForAResetNoLongerThanForAnythingElse) {
-  Peers peers;
-  peers.answerAfter(60.0);
-  RosDriver driver(ros::NodeHandle(), 1.0, {/*recorder=*/false, /*trainer=*/false});
-  EXPECT_TRUE(testing::names(errorOf(&driver, trial()), {"/reset", "answer", " 1 s"}));
-}
-
 TEST(RosDriverTest, ConnectsAgainAfterAServiceThatDidNotAnswer) {
   Peers peers;
   peers.answerAfter(3.0);

@@ -24,12 +24,6 @@ using testing::writeText;
 
 using RunFolderFilesTest = testing::RunFolderCase;
 
-TEST_F(RunFolderFilesTest, AFinishedTrialWithoutItsBagIsRefused) {
-  finish(2);
-  fs::remove(file("trial_001/trial.bag"));
-  expectRefused({"trial_001/trial.bag", "missing"});
-}
-
 TEST_F(RunFolderFilesTest, BagsOfAnEarlierTryAreKeptUnderOtherNames) {
   finish(1);
   RunFolder folder(configuration_);

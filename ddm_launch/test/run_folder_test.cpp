@@ -44,15 +44,6 @@ TEST_F(RunFolderTest, ANewFolderIsMadeWithTheEffectiveConfigurationAndTheVersion
   EXPECT_TRUE(folder.warnings().empty());
 }
 
-TEST_F(RunFolderTest, AFolderIsOnlyMadeForTheFirstResult) {
-  { const RunFolder folder(configuration_); }
-  EXPECT_FALSE(fs::exists(scratch_.file("run")));
-  RunFolder folder(configuration_);
-  EXPECT_FALSE(fs::exists(scratch_.file("run")));
-  folder.beginRun({0});
-  EXPECT_TRUE(fs::exists(file("config.yaml")));
-}
-
 TEST_F(RunFolderTest, OpeningAFolderChangesNothingInIt) {
   finish(2);
   RunFolder(configuration_).writeSummary(1.0);
@@ -95,21 +86,14 @@ TEST_F(RunFolderTest, AnotherValueOfAnyOtherKeyIsRefused) {
   const std::vector<std::pair<std::string, std::function<void(Configuration*)>>> changes = {
       {"experiment/preset: paper there, debug here",
        [](auto* c) { c->experiment.preset = "debug"; }},
-      {"trial/num_steps: 30 there, 31 here", [](auto* c) { c->trial.num_steps = 31; }},
       {"goal/tolerance: 10.0 there, 9.0 here", [](auto* c) { c->plant_info.tolerance = 9.0; }},
       {"plant/friction: 1.0 there, 0.5 here",
        [](auto* c) { c->plant = testing::plantOf("{type: pendulum, friction: 0.5}"); }},
-      {"plant/edge_softness",
-       [](auto* c) { c->plant = testing::plantOf("{type: pendulum, edge_softness: 0.3}"); }},
       {"camera/noise_std", [](auto* c) { c->camera.noise_std = 0.3; }},
-      {"sim/lockstep", [](auto* c) { c->sim.lockstep = false; }},
-      {"image/size", [](auto* c) { c->model.image.size = 50; }},
       {"model/encoder_widths",
        [](auto* c) {
          c->model.model.encoder_widths = {25, 12};
        }},
-      {"training/max_iterations", [](auto* c) { c->model.training.max_iterations = 1; }},
-      {"data_set/torque_topic", [](auto* c) { c->model.data_set.torque_topic = "u"; }},
       {"mpc/epsilon: 0.2 there, 0.20000000000000004 here",
        [](auto* c) { c->mpc.epsilon = std::nextafter(0.2, 1.0); }}};
   for (const auto& change : changes) {

@@ -55,12 +55,6 @@ class StartTest : public ::testing::Test {
   Configuration configuration_ = toyConfiguration(scratch_.file("run"));
 };
 
-TEST_F(StartTest, NothingToStartFromStaysNothing) {
-  prepareStart(&configuration_);
-  EXPECT_TRUE(configuration_.start.empty());
-  EXPECT_FALSE(toYaml(configuration_)["start"]);
-}
-
 TEST_F(StartTest, BagsOfThePlantGetTheirChecksums) {
   configuration_.start.bags = {bag(51)};
   prepareStart(&configuration_);

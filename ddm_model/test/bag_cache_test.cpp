@@ -85,18 +85,6 @@ TEST_F(BagCacheTest, StopsBeforeTheNextBagWhenItIsTold) {
   EXPECT_THROW(cache_.read({a, missing}, [] { return false; }), ReadingCancelled);
 }
 
-TEST_F(BagCacheTest, TheGoalImageOfTheLastBagThatHasOneCounts) {
-  const auto writeGoal = [this](const std::string& name, double angle) {
-    testing::ToyBag bag(folder_.file(name));
-    bag.frame(1.0, 0.0, 1.0);
-    bag.goal(1.0, testing::imageMessage(1.0, testing::toyImage(angle)));
-    return folder_.file(name);
-  };
-  const std::string first = writeGoal("first.bag", 1.0), last = writeGoal("last.bag", 2.0);
-  testing::writeTrial(folder_.file("none.bag"), toyTrial(5, 1), /*with_goal=*/false);
-  EXPECT_EQ(cache_.read({first, last, folder_.file("none.bag")}).goal(), testing::toyImage(2.0));
-}
-
 TEST_F(BagCacheTest, TellsTheNotesOfEachBagOnce) {
   std::vector<std::string> notes;
   BagCache cache(testing::kToySize, BagOptions(),

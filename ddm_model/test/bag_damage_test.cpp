@@ -114,9 +114,6 @@ TEST_F(BagDamage, WhatPeopleTakeForABagIsToldWithTheCommandThatHelps) {
       {"#ROSBAG V1.2\n", "rosbag filter"},
       {text("\x1f\x8b\x08\0", 4), "gunzip"},
       {"PK\x03\x04", "unzip"},
-      {"BZh91AY", "bunzip2"},
-      {"7z\xbc\xaf\x27\x1c", "7z x"},
-      {"Rar!\x1a\x07", "unrar"},
       {"folder/" + std::string(250, '\0') + "ustar", "tar xf"},
       {"\n <?xml version='1.0'?>", "web page"},
       {"<!doctype html>", "web page"}};

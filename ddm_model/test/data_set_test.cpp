@@ -25,17 +25,6 @@ DataSet numbered(int first, int count) {
   return data;
 }
 
-TEST(DataSet, KeepsPixelsAndTorquesInTheOrderTheyCame) {
-  DataSet data(2, 2);
-  data.append({1, 2, 3, 4}, Eigen::Vector2d(0.5, -0.5), true);
-  data.append({5, 6, 7, 8}, Eigen::Vector2d(1.5, -1.5), false);
-  ASSERT_EQ(data.numFrames(), 2);
-  EXPECT_EQ(data.numPixels(), 4);
-  EXPECT_EQ(data.image(0), Grey({1, 2, 3, 4}));
-  EXPECT_EQ(data.image(1), Grey({5, 6, 7, 8}));
-  EXPECT_EQ(data.torques().col(1), Eigen::Vector2d(1.5, -1.5));
-}
-
 TEST(DataSet, GivesImagesSideBySideTheGoalLast) {
   DataSet data = numbered(0, 3);
   EXPECT_EQ(data.numImages(), 3);

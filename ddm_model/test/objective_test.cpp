@@ -87,14 +87,6 @@ JointObjective<double>::Value slowValue(const Networks<double>& nets,
   return value;
 }
 
-/// V_R + V_P as a function of theta.
-DifferentiableFunction jointFunction(JointObjective<double>* objective) {
-  return [objective](const Eigen::VectorXd& theta, Eigen::VectorXd* gradient) {
-    const auto value = objective->evaluate(theta, gradient);
-    return value.v_r + value.v_p;
-  };
-}
-
 /// What some terms come to as a function of theta.
 DifferentiableFunction singleTerm(JointObjective<double>* objective, Terms terms) {
   return [objective, terms](const Eigen::VectorXd& theta, Eigen::VectorXd* gradient) {
@@ -184,20 +176,6 @@ TEST(JointObjective, GradientOfEachTermAloneAndWithWeightDecayMatchesDifferences
   EXPECT_TRUE(testing::gradientMatches(singleTerm(&objective, {true, true, 1, 0.3}), theta));
 }
 
-TEST(JointObjective, DirectionalDerivativeMatchesAtTheSizeOfThePaper) {
-  const Networks<double> nets(ModelOptions{}, 1);
-  JointObjective<double> objective(
-      nets, randomData(50, 1, 400, true, {{0, 100}, {100, 100}, {200, 200}}));
-  const Eigen::VectorXd theta = 0.2 * randomMatrix(nets.numParams(), 1, 3);
-  Eigen::VectorXd gradient;
-  objective.evaluate(theta, &gradient);
-  for (unsigned seed : {4U, 5U}) {
-    const Eigen::VectorXd direction =
-        gradient.normalized() + randomMatrix(nets.numParams(), 1, seed).normalized();
-    EXPECT_TRUE(testing::directionalDerivativeMatches(jointFunction(&objective), theta, direction));
-  }
-}
-
 TEST(JointObjective, TheNumberOfProcessorsChangesNoBit) {
   const Networks<float> nets(tinyOptions(), 1);
   const auto data = randomData(4, 1, 1500, true, {{0, 700}, {700, 800}});  // twelve parts
@@ -238,24 +216,6 @@ TEST(JointObjective, SinglePrecisionAgreesWithDouble) {
   EXPECT_NEAR(value_single.v_r / value.v_r, 1.0, 1e-5);
   EXPECT_NEAR(value_single.v_p / value.v_p, 1.0, 1e-5);
   EXPECT_TRUE(gradient_single.cast<double>().isApprox(gradient, 1e-4));
-}
-
-TEST(JointObjective, NoPredictionStraddlesTwoSegments) {
-  const Networks<double> nets(tinyOptions(), 1);
-  const auto data = randomData(4, 1, 10, false, {{0, 5}, {5, 5}});
-  auto changed = data;  // the last torque of a segment answers an image that has no successor
-  changed.torques(0, 4) += 100.0;
-  changed.torques(0, 9) += 100.0;
-  auto straddling = changed;
-  straddling.segments = {{0, 10}};
-  auto joined = data;
-  joined.segments = {{0, 10}};
-  const Eigen::VectorXd theta = randomMatrix(nets.numParams(), 1, 3);
-  const auto v_p = [&](const TrainingData<double>& with) {
-    return JointObjective<double>(nets, with).evaluate(theta, nullptr).v_p;
-  };
-  EXPECT_EQ(v_p(data), v_p(changed));
-  EXPECT_NE(v_p(joined), v_p(straddling));  // the check above can fail
 }
 
 TEST(JointObjective, NamesWhatPredictionsNeedWhereNoSegmentIsLongEnough) {

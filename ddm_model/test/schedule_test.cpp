@@ -39,18 +39,5 @@ TEST(Schedule, PredictionsOfSeveralStepsAreWarmedUpByOne) {
   EXPECT_EQ(makeSchedule(training).stages.size(), 2U);
 }
 
-TEST(Schedule, TheRestAfterTheChoiceIsForTheBestStartAlone) {
-  TrainingOptions training;
-  training.max_iterations = 900;
-  EXPECT_FALSE(makeSchedule(training).finish);
-  training.selection_iterations = 200;
-  const Schedule schedule = makeSchedule(training);
-  EXPECT_EQ(schedule.stages.back().max_iterations, 200);
-  ASSERT_TRUE(schedule.finish);
-  EXPECT_EQ(schedule.finish->max_iterations, 700);
-  training.selection_iterations = 900;
-  EXPECT_FALSE(makeSchedule(training).finish);
-}
-
 }  // namespace
 }  // namespace ddm

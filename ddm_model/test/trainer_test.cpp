@@ -3,19 +3,15 @@
 #include "ddm_model/trainer.h"
 
 #include <gtest/gtest.h>
-#include <omp.h>
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <stdexcept>
 
 #include "ddm_model/ddm.h"
 #include "ddm_model/minimise.h"
-#include "ddm_model/model_file.h"
 #include "ddm_model/objective.h"
 #include "ddm_msgs/testing/expect_error.h"
-#include "restart.h"
 #include "toy_data.h"
 
 namespace ddm {
@@ -38,7 +34,6 @@ class Trainer : public ::testing::Test {
   TrainingResult run(const TrainingCallback& callback = nullptr) const {
     return train(data_, model_, training_, info_, callback);
   }
-  std::string trainedBytes() const { return serialiseModel(run().model.value()); }
 
   DataSet data_ = testing::toyTrial(30, 1);
   ModelOptions model_ = testing::toyModelOptions();
@@ -163,54 +158,6 @@ TEST_F(Trainer, ComparesStartsOnAPartAndLearnsFromAllFrames) {
   const TrainingResult late = run();
   training_.selection_frames = 30;
   EXPECT_EQ(run().model->theta(), late.model->theta());
-}
-
-TEST(EvenPart, HasStretchesSpreadOverAllFramesAndTheGoal) {
-  TrainingData<float> data;
-  data.scores = Eigen::RowVectorXf::LinSpaced(401, 0.0F, 400.0F);
-  data.torques = Eigen::RowVectorXd::LinSpaced(400, 0.0, 399.0);
-  data.segments = {{0, 50}, {50, 250}, {300, 100}};
-  const TrainingData<float> part = evenPart(data, 200, 2);
-  ASSERT_EQ(part.torques.cols(), 150);
-  EXPECT_EQ(part.torques(0, 0), 150.0);  // the second stretch of the second segment, and the third
-  EXPECT_EQ(part.torques(0, 149), 299.0);
-  EXPECT_EQ(part.scores(0, 149), 299.0F);
-  EXPECT_EQ(part.scores(0, 150), 400.0F) << "the goal";
-  ASSERT_EQ(part.segments.size(), 2U);
-  EXPECT_EQ(part.segments[1].begin, 100);
-  EXPECT_EQ(evenPart(data, 400, 2).torques, data.torques);
-  EXPECT_EQ(evenPart(data, 200, 100).torques, data.torques) << "no stretch is long enough";
-}
-
-TEST(EvenPart, HasFewFramesFromSeveralPlaces) {
-  TrainingData<float> data;
-  data.scores = Eigen::RowVectorXf::LinSpaced(400, 0.0F, 399.0F);
-  data.torques = Eigen::RowVectorXd::LinSpaced(400, 0.0, 399.0);
-  data.segments = {{0, 100}, {100, 100}, {200, 200}};
-  for (const Eigen::Index max_frames : {20, 50, 80, 99}) {
-    const TrainingData<float> part = evenPart(data, max_frames, 2);
-    EXPECT_LE(part.torques.cols(), max_frames);
-    EXPECT_GT(part.torques.cols(), max_frames / 2);
-    EXPECT_GE(part.segments.size(), 3U);
-    EXPECT_LT(part.torques(0, 0), 200.0);
-    EXPECT_GE(part.torques(0, part.torques.cols() - 1), 200.0);
-  }
-  EXPECT_EQ(evenPart(data, 2, 2).torques, data.torques) << "too few for a prediction";
-}
-
-TEST_F(Trainer, CountsIterationsAndProgressOverAllStages) {
-  training_.schedule = "sequential";
-  training_.max_iterations = 7;
-  training_.function_tolerance = 0.0;
-  TrainingProgress last;
-  const TrainingResult result = run([&last](const TrainingProgress& progress) {
-    EXPECT_GE(progress.fraction_done, last.fraction_done);
-    last = progress;
-    return true;
-  });
-  EXPECT_EQ(result.iterations, 14);
-  EXPECT_EQ(last.iteration, 14);
-  EXPECT_DOUBLE_EQ(last.fraction_done, 1.0);
 }
 
 TEST_F(Trainer, TheChosenStartAloneGoesOn) {

@@ -6,7 +6,6 @@
 
 #include <limits>
 #include <random>
-#include <tuple>
 
 #include "random_problems.h"
 
@@ -44,44 +43,6 @@ TEST(GpMoments, AdjointMatchesDifferencesForModerateSingularAndZeroCovariance) {
       EXPECT_TRUE(inputAdjointMatches(model, randomGaussian(3, rank, 0.5, random), random))
           << "rank " << rank << (uncertain ? "" : ", without model uncertainty");
     }
-  }
-}
-
-TEST(GpMoments, AdjointInTheModelMatchesDifferences) {
-  std::mt19937_64 random(7);
-  constexpr int kDim = 3, kOutputs = 2, kPoints = 5;
-  GpModel model = randomGp(kDim, kOutputs, kPoints, false, random);
-  const Moments weights = randomMoments(kDim, kOutputs, random);
-  for (const int rank : {3, 1, 0}) {
-    const Gaussian input = randomGaussian(kDim, rank, 0.5, random);
-    // x contains inputs, beta and log length-scales, each by columns.
-    Eigen::VectorXd x(kDim * kPoints + kPoints * kOutputs + kDim * kOutputs);
-    const auto views = [&](double* data) {
-      return std::make_tuple(
-          Eigen::Map<Eigen::MatrixXd>(data, kDim, kPoints),
-          Eigen::Map<Eigen::MatrixXd>(data + kDim * kPoints, kPoints, kOutputs),
-          Eigen::Map<Eigen::MatrixXd>(data + kDim * kPoints + kPoints * kOutputs, kDim, kOutputs));
-    };
-    views(x.data()) = std::tie(model.inputs, model.beta, model.hyperparameters.log_length_scales);
-    const auto J = [&](const Eigen::VectorXd& at, Eigen::VectorXd* gradient) {
-      Eigen::VectorXd copy = at;
-      GpModel changed = model;
-      std::tie(changed.inputs, changed.beta, changed.hyperparameters.log_length_scales) =
-          views(copy.data());
-      GpMoments moments(changed);
-      GpMoments::Tape tape;
-      const double value = innerProduct(moments.predict(input, &tape), weights);
-      if (gradient != nullptr) {
-        GpGradient d_model{Eigen::MatrixXd::Zero(kDim, kPoints),
-                           Eigen::MatrixXd::Zero(kPoints, kOutputs),
-                           Eigen::MatrixXd::Zero(kDim, kOutputs)};
-        moments.backwardToModel(tape, weights, &d_model);
-        gradient->resize(at.size());
-        views(gradient->data()) = std::tie(d_model.inputs, d_model.beta, d_model.log_length_scales);
-      }
-      return value;
-    };
-    EXPECT_TRUE(ddm::testing::gradientMatches(J, x)) << "rank " << rank;
   }
 }
 

@@ -99,28 +99,6 @@ TEST(Propagation, HasTheMomentsOfSamplesWhereAllIsGaussianAlsoIfThePolicySeesNoi
   }
 }
 
-TEST(Propagation, AdjointMatchesDifferencesWithAndWithoutNoiseAtThePolicy) {
-  for (const bool noisy : {false, true}) {
-    for (const int rank : {2, 0}) {
-      Pendulum pendulum(4, noisy);
-      const Propagation propagation(pendulum.model, pendulum.options);
-      const auto map = [&](const Gaussian& state) {
-        const Gaussian next = propagation.step(pendulum.policy, state);
-        return Moments{next.mean, next.covariance, Eigen::MatrixXd::Zero(2, 2)};
-      };
-      const auto adjoint = [&](const Gaussian& state, const Moments& d_output) {
-        Propagation::Tape tape;
-        propagation.step(pendulum.policy, state, &tape);
-        return propagation.backward(pendulum.policy, tape,
-                                    Gaussian{d_output.mean, d_output.covariance}, nullptr);
-      };
-      EXPECT_TRUE(adjointMatches(map, adjoint, randomGaussian(2, rank, 0.4, pendulum.random),
-                                 pendulum.random))
-          << "rank " << rank << (noisy ? ", noisy" : "");
-    }
-  }
-}
-
 TEST(LongTermCost, IsTheSumOverTheStepsWithoutTheStart) {
   Pendulum pendulum(6);
   LongTermCost cost = pendulum.cost(3);

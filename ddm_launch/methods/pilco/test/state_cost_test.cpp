@@ -56,13 +56,6 @@ TEST(Augmentation, AdjointMatchesDifferences) {
   }
 }
 
-TEST(Augmentation, ReplacesAnglesBehindTheOtherEntries) {
-  const Eigen::VectorXd x = vectorOf({0.1, 0.2, 0.3});
-  const Eigen::VectorXd expected = vectorOf({0.1, 0.3, std::sin(0.2), std::cos(0.2)});
-  EXPECT_LE((replaceAngles(3, {1}).value(x) - expected).norm(), 1e-15);
-  EXPECT_EQ(replaceAngles(3, {}).value(x), x);
-}
-
 TEST(SineCovariance, IsExactForVariancesNearTheSmallestNumbers) {
   // cov(sin a, sin b) is c cos m_a cos m_b for c -> 0. Computing e^c - 1 by subtraction would lose
   // all digits.

@@ -62,22 +62,5 @@ inline ::testing::AssertionResult gradientMatches(const DifferentiableFunction& 
          << ", numeric " << numeric[at] << ", relative error " << error[at];
 }
 
-/// Checks the derivative along one direction: for sizes at which every entry would take too long.
-/// The direction should not be orthogonal to the gradient; the error is relative to the derivative.
-inline ::testing::AssertionResult directionalDerivativeMatches(const DifferentiableFunction& f,
-                                                               const Eigen::VectorXd& x,
-                                                               const Eigen::VectorXd& direction,
-                                                               double tolerance = 1e-6) {
-  Eigen::VectorXd gradient;
-  f(x, &gradient);
-  const Eigen::VectorXd unit = direction.normalized();
-  const double analytic = gradient.dot(unit);
-  const double numeric = centralDifference(f, x, unit, kDifferenceStep);
-  const double error = std::abs(analytic - numeric) / std::max(std::abs(analytic), 1e-12);
-  if (error <= tolerance) return ::testing::AssertionSuccess();  // NaN fails
-  return ::testing::AssertionFailure()
-         << "analytic " << analytic << ", numeric " << numeric << ", relative error " << error;
-}
-
 }  // namespace testing
 }  // namespace ddm
