@@ -101,10 +101,14 @@ TEST_F(Lockstep, CountsAndIgnoresATorqueWithAnotherStamp) {
   client_->publish(client_->images[1].header.stamp, {2.0});
   ASSERT_TRUE(client_->waitForImages(3));
   EXPECT_EQ(client_->truths[2].effort, std::vector<double>{2.0});
+}
+
+TEST_F(Lockstep, GoesOnAfterABadTorqueWithAnotherStamp) {
+  const ros::Time start = begin(0);
   client_->publish(start + ros::Duration(7.0), {kNaN});
   ASSERT_TRUE(client_->waitForLog("torque refused"));
-  client_->publish(client_->images[2].header.stamp, {1.0});
-  EXPECT_TRUE(client_->waitForImages(4));
+  client_->publish(start, {1.0});
+  EXPECT_TRUE(client_->waitForImages(2));
 }
 
 TEST_F(Lockstep, RefusesATorqueThatNoMotorHasNamesItsPublisherAndEndsTheTrial) {
