@@ -95,8 +95,7 @@ void Algorithm1::recordTrial(int trial) {
   }
 }
 
-/// Algorithm 1: "Update DDM with all data collected so far". train() in ddm_model implements the
-/// joint training, eqs. (5a) to (5c).
+/// "Update DDM with all data collected so far" by train() of ddm_model, eqs. (5a) to (5c).
 TrainingOutcome Algorithm1::updateModel(int trial) {
   const TrialId id = requestFor(configuration_, trial, /*evaluation=*/false).id;
   const std::vector<std::string> bags = folder_.bagsUpTo(trial);
@@ -111,8 +110,7 @@ TrainingOutcome Algorithm1::updateModel(int trial) {
   return outcome;
 }
 
-/// Evaluates the model in a greedy episode (epsilon = 0). The learner never trains on this episode
-/// (paper, Sec. 4.2).
+/// Evaluates the model in a greedy episode (epsilon = 0), which is never trained on (Sec. 4.2).
 TrialOutcome Algorithm1::evaluate(int trial) {
   progress_.beginPhase(trial, "evaluate");
   const RunId run = {trial, /*evaluation=*/true};
