@@ -124,7 +124,7 @@ CASES = [
            ("flip config.yaml", STAYS, "use another folder"),
            ("flip model.ddm", REFUSED, "model.ddm", "is damaged (wrong checksum)"),
            ("flip head of model.ddm", REFUSED, "model.ddm"), ("cut model.ddm", REFUSED, "model.ddm"),
-           ("read-only folder", STAYS, "config.yaml: Read-only file system"),
+           ("read-only folder", STAYS, "Read-only file system"),
            ("other seed", STAYS, "holds another experiment", "experiment/seed"),
            ("unfinished bag", REFUSED_AND_KEPT, "new.bag.active", "rosbag reindex"),
            ("unfinished trial", "finished, kept, equal")),
