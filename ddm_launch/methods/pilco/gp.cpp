@@ -195,8 +195,8 @@ GpFit makeGpModel(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets,
     const Covariance covariance(inputs, thetaOf(hyperparameters, a));
     if (!covariance.positiveDefinite()) {
       fit.model = GpModel();
-      fit.message = message("the covariance of output ", a + 1,
-                            " is not positive definite: its noise std must be larger");
+      fit.message = textOf("the covariance of output ", a + 1,
+                           " is not positive definite: its noise std must be larger");
       return fit;
     }
     fit.model.beta.col(a) = covariance.factor.solve(targets.col(a));
@@ -224,7 +224,7 @@ GpFit trainGp(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets, int
   GpFit training;
   for (int a = 0; a < targets.cols(); ++a) {
     const auto say = [&training, a](const std::string& text) {
-      training.addMessage(message("output ", a + 1, ": ", text));
+      training.addMessage(textOf("output ", a + 1, ": ", text));
     };
     const Eigen::VectorXd y = targets.col(a);
     const auto trainFrom = [&](const Hyperparameters& from) {

@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ddm_common/option_checks.h>
+
 #include <Eigen/Core>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -49,19 +50,11 @@ inline Gaussian known(const Eigen::VectorXd& x) {
 /// (A + A^T) / 2
 inline Eigen::MatrixXd symmetricPart(const Eigen::MatrixXd& A) { return 0.5 * (A + A.transpose()); }
 
-/// Concatenates all parts as an output stream prints them.
-template <class... Parts>
-std::string message(const Parts&... parts) {
-  std::ostringstream text;
-  (text << ... << parts);
-  return text.str();
-}
-
 /// @param ok  condition, written such that NaN makes it false
 /// @throws std::invalid_argument with the concatenated parts as message if `ok` is false
 template <class... Parts>
 void require(bool ok, const Parts&... parts) {
-  if (!ok) throw std::invalid_argument(message(parts...));
+  if (!ok) throw std::invalid_argument(textOf(parts...));
 }
 
 }  // namespace ddm::pilco

@@ -70,9 +70,9 @@ class TrueStateObservation : public Observation {
           parseTrajectoryCsv(readFile(file), plant_.info().state_names, file);
       const Eigen::Index due = trial < data.segments().size() ? data.segments()[trial].size : 0;
       if (states.cols() != due) {
-        throw std::runtime_error(pilco::message(file, " must have the ", due,
-                                                " frames of the bag beside it, got ", states.cols(),
-                                                ": the run folder is damaged, use another"));
+        throw std::runtime_error(textOf(file, " must have the ", due,
+                                        " frames of the bag beside it, got ", states.cols(),
+                                        ": the run folder is damaged, use another"));
       }
       startTrial({id.seed, static_cast<std::uint32_t>(trial), false});
       for (Eigen::Index i = 0; i < states.cols(); ++i) X.col(sample++) = measure(states.col(i));

@@ -179,9 +179,8 @@ void PilcoMethod::makePolicy(const ObservedData& observed, int torque_dim) {
 void PilcoMethod::requireFit(const PilcoMemory& memory) const {
   const Eigen::Index count = policy_->parameters().size();
   if (memory.policy.size() == count) return;
-  throw std::runtime_error(pilco::message(memory.file, ": policy must have ", count,
-                                          " parameters, got ", memory.policy.size(),
-                                          ": use another run folder"));
+  throw std::runtime_error(textOf(memory.file, ": policy must have ", count, " parameters, got ",
+                                  memory.policy.size(), ": use another run folder"));
 }
 
 pilco::Propagation PilcoMethod::learnDynamics(const DataSet& data, const ObservedData& observed,

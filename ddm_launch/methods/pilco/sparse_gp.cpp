@@ -174,8 +174,8 @@ GpFit makeSparseGpModel(const Eigen::MatrixXd& inducing, const Eigen::MatrixXd& 
     const Fitc fitc(inducing, inputs, thetaOf(hyperparameters, a));
     if (!fitc.positive_definite) {
       fit.model = GpModel();
-      fit.message = message("the sparse covariance of output ", a + 1,
-                            " is not positive definite: its noise std must be larger");
+      fit.message = textOf("the sparse covariance of output ", a + 1,
+                           " is not positive definite: its noise std must be larger");
       return fit;
     }
     fit.model.beta.col(a) = fitc.beta(targets.col(a));

@@ -1,6 +1,7 @@
 # Draws evaluations as an animation of image, prediction and feature space, or as a strip of images.
 # SPDX-License-Identifier: BSD-3-Clause
 import collections
+import math
 import os
 import re
 
@@ -160,7 +161,7 @@ def draw_strip(options):
     images, torques, motors = draw_evaluation(options.folder, trial)
     dt = float(read_setting(options.folder, "plant", "dt", "time step"))
     shown = max(1, min(round(options.seconds / dt), len(images)))
-    steps = np.unique(np.linspace(0, shown - 1, STRIP_IMAGES).round().astype(int))
+    steps = range(0, shown, math.ceil(shown / STRIP_IMAGES))
     with new_screen_figure(len(steps) * 1.0 + 0.6, 3.0) as figure:
         grid = figure.add_gridspec(2, len(steps), height_ratios=[1.0, 1.1])
         for column, step in enumerate(steps):
@@ -188,7 +189,7 @@ FILM = Figure(
     [argument("evaluations", metavar="RUN/evaluation_NNN", nargs="+", help="shown one after the other"),
      argument("--seconds", type=number(float, 0), default=10.0, help="of each, default %(default)g")], draw_film, SUFFIX)
 STRIP = Figure(
-    "A greedy evaluation of a run folder as a strip. %d images, and the torques below." % STRIP_IMAGES,
+    "A greedy evaluation of a run folder as a strip. At most %d images, and the torques below." % STRIP_IMAGES,
     [argument("folder", metavar="DIR", help="run folder (it holds trials.csv and evaluation_NNN)"),
      argument("--trial", type=int, metavar="N", help="default: the last that succeeded, else the last"),
      argument("--seconds", type=number(float, 0), default=3.0, help="from the start on, default %(default)g")], draw_strip)

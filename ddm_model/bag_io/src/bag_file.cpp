@@ -63,7 +63,7 @@ template <class... Parts>
 }
 
 [[noreturn]] void refuseFormat(const std::string& what, const std::string& remedy) {
-  refuse("is ", what, "; only bags of format 2.0 (ROS 1) are read: ", remedy);
+  refuseBag("is ", what, "; only bags of format 2.0 (ROS 1) are read: ", remedy);
 }
 
 void requireBag(const std::string& front) {
@@ -196,11 +196,11 @@ BagFile::BagFile(std::istream* in) : in_(in) {
   const Record header(&left);
   header.requireKind(kBagHeader);
   if (header.fields.has("encryptor") && !header.fields.text("encryptor").empty()) {
-    refuse("is encrypted by ", header.fields.text("encryptor"),
-           ": decrypt it with `rosbag decrypt`");
+    refuseBag("is encrypted by ", header.fields.text("encryptor"),
+              ": decrypt it with `rosbag decrypt`");
   }
   index_ = header.fields.number<std::uint64_t>("index_pos");
-  if (index_ == 0) refuse("was not closed: run `rosbag reindex` on it, then read it again");
+  if (index_ == 0) refuseBag("was not closed: run `rosbag reindex` on it, then read it again");
   if (index_ > size || size - index_ > kMaxChunk) {
     refuseDamage("its index is due at byte ", index_, " of ", size);
   }
@@ -264,14 +264,14 @@ void BagFile::forEachMessage(const std::set<std::string>& topics,
         }
       }
     } catch (const Damage& e) {
-      refuse("chunk at byte ", chunk->first, ": ", e.what());
+      refuseBag("chunk at byte ", chunk->first, ": ", e.what());
     }
   }
 }
 
 void refuseMessage(const BagMessage& message, const std::exception& fault) {
-  refuse("the message of topic ", message.connection.topic, " recorded at ",
-         timeText(message.recorded), " ", fault.what(), ": leave this bag out");
+  refuseBag("the message of topic ", message.connection.topic, " recorded at ",
+            timeText(message.recorded), " ", fault.what(), ": leave this bag out");
 }
 
 }  // namespace ddm

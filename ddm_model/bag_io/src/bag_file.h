@@ -15,7 +15,7 @@
 #include <string>
 #include <string_view>
 
-#include "refuse.h"
+#include "bag_texts.h"
 
 namespace ddm {
 
@@ -72,8 +72,8 @@ template <class Message>
 Message parse(const BagMessage& message) {
   const BagConnection& connection = message.connection;
   if (connection.md5sum != ros::message_traits::md5sum<Message>()) {
-    refuse("topic ", connection.topic, " was recorded with another definition of ", connection.type,
-           ": convert the bag with `rosbag fix`, or record it again");
+    refuseBag("topic ", connection.topic, " was recorded with another definition of ",
+              connection.type, ": convert the bag with `rosbag fix`, or record it again");
   }
   try {
     return messageFromBytes<Message>(message.bytes.data(), message.bytes.size());

@@ -22,9 +22,9 @@
 #include <utility>
 
 #include "bag_file.h"
+#include "bag_texts.h"
 #include "bag_topics.h"
 #include "pairing.h"
-#include "refuse.h"
 
 namespace ddm {
 namespace {
@@ -85,9 +85,9 @@ Pairs readPairs(BagFile* bag, const BagTopics& topics, const BagOptions& options
   const std::string unknown = reader.withoutEffort();
   if (torques.empty()) {
     const std::string motors = boost::algorithm::join(options.motors, " and ");
-    refuse("topic ", topic, " has no torque", motors.empty() ? "" : " of " + motors,
-           unknown.empty() ? "" : " (" + unknown + " have no effort or number of them)",
-           ": leave this bag out, or set data_set/torque_topic and motors");
+    refuseBag("topic ", topic, " has no torque", motors.empty() ? "" : " of " + motors,
+              unknown.empty() ? "" : " (" + unknown + " have no effort or number of them)",
+              ": leave this bag out, or set data_set/torque_topic and motors");
   }
   std::vector<std::string> notes;
   if (!unknown.empty()) {
@@ -137,14 +137,14 @@ class FrameImages {
       std::string encoding;
       goal_ = greyOf(imageOf(message, &encoding), image_size_, options_);
     } catch (const std::exception& e) {
-      refuse("goal image on ", message.connection.topic, ": ", e.what());
+      refuseBag("goal image on ", message.connection.topic, ": ", e.what());
     }
   }
 
   /// @return all samples, with notes to the user
   /// @throws std::runtime_error if more images are broken than whole
   BagContent content() const {
-    if (2 * num_broken_ > greys_.size()) refuse(first_broken_);
+    if (2 * num_broken_ > greys_.size()) refuseBag(first_broken_);
     const auto torque_dim = static_cast<Eigen::Index>(pairs_.frames.front().torque.size());
     BagContent content{DataSet(image_size_, static_cast<int>(torque_dim)), camera_};
     std::vector<ros::Time> times;
@@ -203,8 +203,8 @@ class FrameImages {
     const bool compressed = encoding != image.encoding;
     if (camera_ == size + encoding) return;
     if (compressed && boost::algorithm::starts_with(camera_, size)) return;
-    refuse("the images change from ", camera_, " to ", size, encoding, " at ", time,
-           ": record one camera setting per bag");
+    refuseBag("the images change from ", camera_, " to ", size, encoding, " at ", time,
+              ": record one camera setting per bag");
   }
 
   /// @return hash of time, image and torque of a sample
@@ -282,22 +282,22 @@ BagContent readBag(const std::string& path, int image_size, const BagOptions& op
   namespace fs = std::filesystem;
   try {
     if (boost::algorithm::ends_with(path, ".active")) {
-      refuse(
+      refuseBag(
           "its recording was not completed; `rosbag reindex` recovers what was written, then "
           "rename it to *.bag");
     }
     if (fs::exists(path + "/metadata.yaml")) {
-      refuse(
+      refuseBag(
           "is the folder of a recording of ROS 2; only bags of format 2.0 (ROS 1) are read: "
           "convert it with `rosbags-convert --src FOLDER --dst FILE.bag` (pip install rosbags)");
     }
-    if (fs::is_directory(path)) refuse("is a folder: name the bags in it");
+    if (fs::is_directory(path)) refuseBag("is a folder: name the bags in it");
     requirePlainFile(path);
     std::ifstream in(path, std::ios::binary);
-    if (!in) refuse(std::strerror(errno));
+    if (!in) refuseBag(std::strerror(errno));
     return readBagBytes(&in, image_size, options);
   } catch (const std::exception& e) {
-    refuse("bag ", path, ": ", e.what());
+    refuseBag("bag ", path, ": ", e.what());
   }
 }
 
@@ -308,7 +308,8 @@ void DifferentBags::require(const std::string& path, const BagContent& content) 
     const auto added = files_.emplace(std::make_pair(status.st_dev, status.st_ino), path);
     const std::string& before = added.first->second;
     if (!added.second) {
-      refuse("bag ", path, " is given twice", before == path ? "" : ", also as " + before, kRemedy);
+      refuseBag("bag ", path, " is given twice", before == path ? "" : ", also as " + before,
+                kRemedy);
     }
   }
   std::map<std::string, std::size_t> shared;  // number of samples in both, by path of the other bag
@@ -319,8 +320,8 @@ void DifferentBags::require(const std::string& path, const BagContent& content) 
   const std::size_t all = content.frame_ids.size();
   for (const auto& [other, number] : shared) {
     if (10 * number <= all) continue;
-    refuse("bag ", path, ": ", number, " of its ", all, " frames are also in bag ", other,
-           ", with the same times", kRemedy, ", or split the recording without an overlap");
+    refuseBag("bag ", path, ": ", number, " of its ", all, " frames are also in bag ", other,
+              ", with the same times", kRemedy, ", or split the recording without an overlap");
   }
 }
 

@@ -16,7 +16,7 @@
 #include <cmath>
 #include <set>
 
-#include "refuse.h"
+#include "bag_texts.h"
 
 namespace ddm {
 namespace {
@@ -97,8 +97,8 @@ std::vector<double> valuesOf(const Names& motors, const Values& all, const std::
     }
   }
   if (missing.empty()) return values;
-  refuse("topic ", topic, " has ", listOf(all.names), ", but no ", listOf(missing),
-         ": set data_set/motors to names that are there");
+  refuseBag("topic ", topic, " has ", listOf(all.names), ", but no ", listOf(missing),
+            ": set data_set/motors to names that are there");
 }
 
 /// @return "/camera/image_raw" for "camera/image_raw/compressed"
@@ -113,16 +113,16 @@ std::string parentOf(const std::string& topic) {
                              const std::string& key) {
   if (absolute(topic.name) == base) {
     if (!ends_with(base, "/theora") && !ends_with(base, "/compressedDepth")) {
-      refuse("topic ", topic.name, " has type ", topic.type, ", it must be ",
-             boost::algorithm::join(types, " or "), ": set data_set/", key);
+      refuseBag("topic ", topic.name, " has type ", topic.type, ", it must be ",
+                boost::algorithm::join(types, " or "), ": set data_set/", key);
     }
     base = parentOf(topic.name);
   }
   const std::string transport = topic.name.substr(topic.name.rfind('/') + 1);
-  refuse("topic ", topic.name, " has images of the transport ", transport, " (", topic.type,
-         "), which cannot be read: record ", base, " or ", base,
-         "/compressed, or play the bag with `rosrun image_transport republish ", transport,
-         " in:=", base, " raw out:=/image_raw` and record that");
+  refuseBag("topic ", topic.name, " has images of the transport ", transport, " (", topic.type,
+            "), which cannot be read: record ", base, " or ", base,
+            "/compressed, or play the bag with `rosrun image_transport republish ", transport,
+            " in:=", base, " raw out:=/image_raw` and record that");
 }
 
 /// @param key  option that gives the name
@@ -141,8 +141,8 @@ Topic findTopic(const BagFile& bag, const std::string& name, const Names& types,
       if (!is_exact && !ends_with(base, absolute(name))) continue;
       std::string& type = (is_exact ? exact : in_namespace)[base][connection.topic];
       if (!type.empty() && type != connection.type) {
-        refuse("topic ", connection.topic, " has messages of ", type, " and ", connection.type,
-               ": leave this bag out");
+        refuseBag("topic ", connection.topic, " has messages of ", type, " and ", connection.type,
+                  ": leave this bag out");
       }
       type = connection.type;
     }
@@ -151,8 +151,8 @@ Topic findTopic(const BagFile& bag, const std::string& name, const Names& types,
   if (found.empty()) return {};
   const auto& [base, topics] = *found.begin();
   if (found.size() > 1) {
-    refuse("topics ", topics.begin()->first, " and ", found.rbegin()->second.begin()->first,
-           " both match: set data_set/", key, " to one of them");
+    refuseBag("topics ", topics.begin()->first, " and ", found.rbegin()->second.begin()->first,
+              " both match: set data_set/", key, " to one of them");
   }
   for (const auto& [topic, type] : topics) {  // a raw topic comes first
     const bool known = absolute(topic) == base || ends_with(topic, "/compressed");
@@ -169,9 +169,9 @@ Topic requireTopic(const BagFile& bag, const std::string& name, const Names& typ
   for (const auto& entry : bag.connections()) {
     topics.insert(entry.second.topic + " (" + entry.second.type + ")");
   }
-  refuse("no topic ", name,
-         " (it holds: ", topics.empty() ? "nothing" : boost::algorithm::join(topics, ", "),
-         "): record it, or set data_set/", key);
+  refuseBag("no topic ", name,
+            " (it holds: ", topics.empty() ? "nothing" : boost::algorithm::join(topics, ", "),
+            "): record it, or set data_set/", key);
 }
 
 }  // namespace
@@ -186,14 +186,16 @@ BagTopics findTopics(const BagFile& bag, const BagOptions& options) {
   topics.torques = requireTopic(bag, options.torque_topic, TorqueReader::types(), "torque_topic");
   topics.goal = findTopic(bag, options.goal_topic, kImages, "goal_topic");
   if (!TorqueReader::answersImages(topics.torques.type) && options.dt == 0.0) {
-    refuse("topic ", topics.torques.name, " has type ", topics.torques.type,
-           ", which does not say which image it answers: set data_set/dt, the time between frames "
-           "[s]");
+    refuseBag(
+        "topic ", topics.torques.name, " has type ", topics.torques.type,
+        ", which does not say which image it answers: set data_set/dt, the time between frames "
+        "[s]");
   }
   if (topics.goal.name == topics.images.name) {
-    refuse("topic ", topics.goal.name,
-           " is meant by data_set/image_topic and data_set/goal_topic: set one of them to another "
-           "topic");
+    refuseBag(
+        "topic ", topics.goal.name,
+        " is meant by data_set/image_topic and data_set/goal_topic: set one of them to another "
+        "topic");
   }
   return topics;
 }
@@ -210,24 +212,24 @@ std::optional<BagTorque> TorqueReader::read(const BagMessage& message) {
   const auto& [topic, type, md5sum, publisher] = message.connection;
   const Values all = kReaders.at(type)(message);
   if (!motors_.empty() && type.rfind("std_msgs/", 0) == 0) {
-    refuse("topic ", topic, " has type ", type,
-           ", whose numbers have no names: leave data_set/motors empty");
+    refuseBag("topic ", topic, " has type ", type,
+              ", whose numbers have no names: leave data_set/motors empty");
   }
   if (type == kWrench && !anyIn(all.names, motors_)) {
-    refuse("topic ", topic, " has forces and torques along ", listOf(all.names),
-           ": set data_set/motors to those of the motors");
+    refuseBag("topic ", topic, " has forces and torques along ", listOf(all.names),
+              ": set data_set/motors to those of the motors");
   }
   BagTorque out{all.stamp, message.recorded, all.values};
   if (type == kJoints) {
     if (!motors_.empty() && !anyIn(all.names, motors_)) return std::nullopt;
     if (names_.empty() && !all.values.empty()) names_ = all.names;
     if (motors_.empty() && !all.values.empty() && all.names != names_) {
-      refuse("the joints of topic ", topic, " change from ", listOf(names_), " to ",
-             listOf(all.names), ": set data_set/motors to those of the motors");
+      refuseBag("the joints of topic ", topic, " change from ", listOf(names_), " to ",
+                listOf(all.names), ": set data_set/motors to those of the motors");
     }
     if (!all.values.empty() && all.values.size() != all.names.size()) {
-      refuse("topic ", topic, " has ", all.values.size(), " effort(s) for ", all.names.size(),
-             " joint(s): record what commands the motors");
+      refuseBag("topic ", topic, " has ", all.values.size(), " effort(s) for ", all.names.size(),
+                " joint(s): record what commands the motors");
     }
   }
   const bool by_name = !motors_.empty() && !all.names.empty() && !all.values.empty();
@@ -243,13 +245,13 @@ std::optional<BagTorque> TorqueReader::read(const BagMessage& message) {
   const std::string time = timeText(out.stamp.isZero() ? out.recorded : out.stamp);
   for (const double value : out.torque) {
     if (std::isfinite(value)) continue;
-    refuse("the torque at ", time, " must be finite, got ", value,
-           ": leave this bag out, or mend what commands the motor");
+    refuseBag("the torque at ", time, " must be finite, got ", value,
+              ": leave this bag out, or mend what commands the motor");
   }
   if (dim_ == 0) dim_ = out.torque.size();
   if (out.torque.size() != dim_) {
-    refuse("the torque of topic ", topic, " at ", time, " has ", out.torque.size(),
-           " value(s) where ", dim_, " are due: give each robot a topic, or leave this bag out");
+    refuseBag("the torque of topic ", topic, " at ", time, " has ", out.torque.size(),
+              " value(s) where ", dim_, " are due: give each robot a topic, or leave this bag out");
   }
   return out;
 }
@@ -287,7 +289,7 @@ std::string Publishers::requireOneAtATime(const std::string& what,
     overlap = overlap || (i > 0 && span.first <= named[i - 1].second.last);
   }
   const std::string text = what + boost::algorithm::join(texts, " and ");
-  if (overlap) refuse(text, ": ", remedy);
+  if (overlap) refuseBag(text, ": ", remedy);
   return named.size() > 1 ? text + ", one after the other: all of them count" : "";
 }
 

@@ -5,8 +5,8 @@
 #include <map>
 #include <utility>
 
+#include "bag_texts.h"
 #include "pairing.h"
-#include "refuse.h"
 
 namespace ddm {
 namespace {
@@ -38,7 +38,7 @@ void sortByRecording(const char* what, std::vector<Message>* messages) {
   for (const Message& message : *messages) {
     const std::uint32_t nsec = std::max(message.stamp.nsec, message.recorded.nsec);
     if (nsec < 1000000000U) continue;
-    refuse("a time of ", what, " has ", nsec, " nanoseconds in its second: it is damaged");
+    refuseBag("a time of ", what, " has ", nsec, " nanoseconds in its second: it is damaged");
   }
   std::stable_sort(messages->begin(), messages->end(),
                    [](const Message& a, const Message& b) { return a.recorded < b.recorded; });
@@ -119,7 +119,7 @@ Pairs pairByClocks(std::vector<BagImage> images, std::vector<BagTorque> torques,
 
   const auto pairBy = [&](bool stamps) {
     if (!stamps && images.size() > 1 && images.front().recorded == images.back().recorded) {
-      refuse(
+      refuseBag(
           "all its images were recorded at ", timeText(images.front().recorded),
           ", as in a bag that was written again, and not all stamps can be trusted: write it with "
           "the times of the original, or stamp images and torques by one clock");
@@ -141,10 +141,10 @@ Pairs pairByClocks(std::vector<BagImage> images, std::vector<BagTorque> torques,
       pairs = pairInTime(images, torques, dt);
     }
     if (pairs.frames.empty() && !stamps) {
-      refuse("of its ", images.size(), " images and ", torques.size(),
-             " torques, images come from ", timeText(first), " to ", timeText(last),
-             " and torques from ", timeText(span.first->time), " to ", timeText(span.second->time),
-             ": record both at once, stamped by one clock");
+      refuseBag("of its ", images.size(), " images and ", torques.size(),
+                " torques, images come from ", timeText(first), " to ", timeText(last),
+                " and torques from ", timeText(span.first->time), " to ",
+                timeText(span.second->time), ": record both at once, stamped by one clock");
     }
     const bool two_clocks = !stamps && lags && !image_fault;
     pairs.lag = two_clocks ? images.front().recorded.toSec() - images.front().stamp.toSec() : 0.0;
@@ -181,7 +181,7 @@ Pairs pairUp(std::vector<BagImage> images, std::vector<BagTorque> torques, doubl
   sortByRecording("an image", &images);
   sortByRecording("a torque", &torques);
   removeCopies(dt, &images);
-  if (images.empty()) refuse("its image topic has no message: leave this bag out");
+  if (images.empty()) refuseBag("its image topic has no message: leave this bag out");
   // BagWriter writes a message at its stamp, other recorders at its arrival.
   const bool of_others =
       dt > 0.0 || std::any_of(images.begin(), images.end(), [](const BagImage& image) {
@@ -207,7 +207,7 @@ Pairs pairUp(std::vector<BagImage> images, std::vector<BagTorque> torques, doubl
     }
   }
   if (pairs.frames.empty()) {
-    refuse(
+    refuseBag(
         "of its ", images.size(), " images and ", torques.size(),
         " torques, no two have the same header stamp: stamp each torque with the image it answers");
   }

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "refuse.h"
+#include "bag_texts.h"
 
 namespace ddm {
 namespace {
@@ -78,7 +78,7 @@ void requireRate(const Pairs& pairs, double apart, double dt) {
   text << "its images come every " << apart << " s, which does not fit data_set/dt = " << dt
        << ": set it (--dt) to a multiple, such as " << multiple * apart << " or "
        << (multiple + 1.0) * apart;
-  refuse(text.str());
+  refuseBag(text.str());
 }
 
 }  // namespace
@@ -90,8 +90,8 @@ Pairs pairByStamp(const std::vector<BagImage>& images, std::vector<BagTorque> to
   std::stable_sort(torques.begin(), torques.end(), byStamp);
   const auto isSame = [](const BagTorque& a, const BagTorque& b) {
     if (a.stamp == b.stamp && a.torque != b.torque) {
-      refuse("two different torques of data_set/torque_topic have the stamp ", timeText(a.stamp),
-             ": stamp each with the image it answers", kRuns);
+      refuseBag("two different torques of data_set/torque_topic have the stamp ", timeText(a.stamp),
+                ": stamp each with the image it answers", kRuns);
     }
     return a.stamp == b.stamp;
   };
@@ -109,8 +109,8 @@ Pairs pairByStamp(const std::vector<BagImage>& images, std::vector<BagTorque> to
     }
     auto is_paired = paired[static_cast<std::size_t>(torque - torques.begin())];
     if (is_paired) {
-      refuse("two different images of data_set/image_topic have the stamp ", timeText(image.stamp),
-             ": let the camera stamp each image anew", kRuns);
+      refuseBag("two different images of data_set/image_topic have the stamp ",
+                timeText(image.stamp), ": let the camera stamp each image anew", kRuns);
     }
     is_paired = true;
     pairs.frames.push_back({image.number, image.time, torque->torque, new_segment});
@@ -131,8 +131,8 @@ Pairs pairInTime(const std::vector<BagImage>& images, std::vector<BagTorque> tor
   const std::vector<ros::Time> image_times = timesOf(images);
   const double apart = medianInterval(image_times);
   if (apart > (1.0 + kTolerance) * dt) {
-    refuse("its images are ", apart, " s apart, and frames must be data_set/dt = ", dt,
-           " s apart: make that as long as images are apart, or longer");
+    refuseBag("its images are ", apart, " s apart, and frames must be data_set/dt = ", dt,
+              " s apart: make that as long as images are apart, or longer");
   }
   std::stable_sort(torques.begin(), torques.end(),
                    [](const BagTorque& a, const BagTorque& b) { return a.time < b.time; });

@@ -195,7 +195,7 @@ RenderOptions placedCamera(const MujocoModel& model, const Mechanism& mechanism,
     corners.rightCols(here.cols()) = here;
   }
   if (corners.cols() == 0) {
-    refuse(
+    refuseModel(
         model.uri(),
         " has no shape that a joint moves, so no image could show its pose: give the moving links "
         "a <visual>, the moving bodies a <geom>");

@@ -98,9 +98,9 @@ MemoryFiles noFiles() {
 
 void add(const std::string& name, const std::string& bytes, mjVFS* files) {
   const int index = files->nfile;
-  if (bytes.empty()) refuse(name, " is empty");
+  if (bytes.empty()) refuseModel(name, " is empty");
   if (mj_makeEmptyFileVFS(files, name.c_str(), static_cast<int>(bytes.size())) != 0) {
-    refuse("it names more files than MuJoCo takes, ", mjMAXVFS - 2);
+    refuseModel("it names more files than MuJoCo takes, ", mjMAXVFS - 2);
   }
   std::memcpy(files->filedata[index], bytes.data(), bytes.size());
 }
@@ -109,8 +109,8 @@ template <class Value>
 void requireFinite(const char* name, const Value* values, int count) {
   if constexpr (std::is_floating_point_v<Value>) {
     if (std::all_of(values, values + count, [](Value x) { return std::isfinite(x); })) return;
-    refuse("the compiled model has numbers that are not finite in ", name,
-           ": look for nan, inf and very large numbers in the file");
+    refuseModel("the compiled model has numbers that are not finite in ", name,
+                ": look for nan, inf and very large numbers in the file");
   }
 }
 
@@ -121,8 +121,8 @@ ModelPointer compile(const ModelText& model) {
     const bool ascii = isAsciiStl(bytes);
     const bool binary = !ascii && fs::path(mesh.first).extension() == ".stl";
     if (binary && !bytes.empty() && bytes.size() != sizeOfStl(bytes)) {
-      refuse(mesh.second, " has ", bytes.size(), " bytes and must have ", sizeOfStl(bytes),
-             " for the triangles that it counts: fetch or export it again");
+      refuseModel(mesh.second, " has ", bytes.size(), " bytes and must have ", sizeOfStl(bytes),
+                  " for the triangles that it counts: fetch or export it again");
     }
     add(mesh.first, ascii ? binaryStl(bytes) : bytes, files.get());
   }
@@ -231,15 +231,15 @@ void tryInOwnProcess(const ModelText& model) {
   while (waitpid(process, &status, 0) < 0 && errno == EINTR) {
   }
   if (said == "ok") return;
-  if (!said.empty()) refuse(said);
+  if (!said.empty()) refuseModel(said);
   const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
   if (signal == SIGXCPU || signal == SIGALRM || signal == SIGKILL) {
-    refuse("MuJoCo ", mj_versionString(),
-           " did not finish reading it in time: make its meshes and textures smaller");
+    refuseModel("MuJoCo ", mj_versionString(),
+                " did not finish reading it in time: make its meshes and textures smaller");
   }
-  refuse("MuJoCo ", mj_versionString(), " crashes on it (",
-         signal == 0 ? "it ends the process" : strsignal(signal),
-         "): look for indices that do not exist, damaged meshes, and empty elements");
+  refuseModel("MuJoCo ", mj_versionString(), " crashes on it (",
+              signal == 0 ? "it ends the process" : strsignal(signal),
+              "): look for indices that do not exist, damaged meshes, and empty elements");
 }
 
 }  // namespace
@@ -252,7 +252,7 @@ void installMujocoHandlers() {
 std::string readModelFile(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-  if (!in || in.bad()) refuse(path, " cannot be read");
+  if (!in || in.bad()) refuseModel(path, " cannot be read");
   return bytes;
 }
 
@@ -269,8 +269,8 @@ DataPointer makeData(const mjModel& model) {
   } catch (const std::runtime_error&) {
     // The error is thrown below.
   }
-  refuse("there is not enough memory for its workspace of ", model.nstack / 131072,
-         " MB: give it a smaller <size nstack, njmax, nconmax>");
+  refuseModel("there is not enough memory for its workspace of ", model.nstack / 131072,
+              " MB: give it a smaller <size nstack, njmax, nconmax>");
 }
 
 }  // namespace ddm

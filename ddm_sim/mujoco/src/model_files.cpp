@@ -46,7 +46,7 @@ class Collector {
     const std::string bytes = readModelFile(file.string());
     checksum_.process_bytes(bytes.data(), bytes.size());
     const std::string mistaken = mistakenFor(bytes);
-    if (!mistaken.empty()) refuse(file.string(), " ", mistaken);
+    if (!mistaken.empty()) refuseModel(file.string(), " ", mistaken);
     const std::size_t begin = bytes.find_first_not_of("\xef\xbb\xbf \t\r\n");
     // Neither a model nor an included file.
     if (begin == std::string::npos || bytes[begin] != '<') return;
@@ -146,14 +146,15 @@ std::string resolved(const std::string& name, const FindPackage& find_package) {
   if (name.rfind(file_scheme, 0) == 0) return name.substr(file_scheme.size());
   if (!has(name, "://")) return name;
   if (name.rfind(package_scheme, 0) != 0) {
-    refuse("names \"", name, "\", which must be a path, package://PACKAGE/PATH or file://PATH");
+    refuseModel("names \"", name,
+                "\", which must be a path, package://PACKAGE/PATH or file://PATH");
   }
   const std::size_t begin = package_scheme.size();
   const std::size_t end = std::min(name.find('/', begin), name.size());
   const std::string package = name.substr(begin, end - begin);
   const std::string folder = package.empty() ? "" : find_package(package);
   if (!folder.empty()) return folder + name.substr(end);
-  refuse(
+  refuseModel(
       "names \"", name, "\", in which ",
       package.empty() ? "the package has no name: write package://PACKAGE/PATH with a package"
                       : "the package " + package +

@@ -68,16 +68,16 @@ Motor actuator(const MujocoModel& model, int i) {
   const mjModel& m = model.get();
   const std::string name = "actuator " + model.name(mjOBJ_ACTUATOR, i) + " of " + model.uri();
   if (strengthOf(m, i) == 0.0) {
-    refuse(name,
-           " must be a <motor> of a joint: make it one, or list the joints that have a motor "
-           "in plant/motors");
+    refuseModel(name,
+                " must be a <motor> of a joint: make it one, or list the joints that have a motor "
+                "in plant/motors");
   }
   const Range range = rangeOf(m, i);
   if (range.low != -range.high) {
-    refuse(name, " has the torques [", range.low, ", ", range.high,
-           "] (ctrlrange and forcerange times gear): they must be symmetric about 0, as "
-           "plant/max_torque is; make them so, or list the joint in plant/motors and give "
-           "plant/max_torque, which leaves this actuator switched off");
+    refuseModel(name, " has the torques [", range.low, ", ", range.high,
+                "] (ctrlrange and forcerange times gear): they must be symmetric about 0, as "
+                "plant/max_torque is; make them so, or list the joint in plant/motors and give "
+                "plant/max_torque, which leaves this actuator switched off");
   }
   return {m.actuator_trnid[2 * i], range.limit()};
 }
@@ -87,8 +87,8 @@ Motor namedMotor(const MujocoModel& model, const std::string& name) {
   motor.joint = model.id(mjOBJ_JOINT, name, "plant/motors");
   const auto follows = model.urdf().leaders.find(name);
   if (follows != model.urdf().leaders.end()) {
-    refuse("plant/motors must list joints that move by themselves, got ", name, " of ", model.uri(),
-           ", which mimics the joint ", follows->second, ": list that one");
+    refuseModel("plant/motors must list joints that move by themselves, got ", name, " of ",
+                model.uri(), ", which mimics the joint ", follows->second, ": list that one");
   }
   motor.limit = model.effortLimit(name);
   if (!motor.limit) motor.limit = limitOfActuators(model.get(), motor.joint);
@@ -108,14 +108,14 @@ std::vector<Motor> motorsOf(const MujocoModel& model, const MujocoOptions& optio
   }
   for (const std::string& name : options.motors) motors.push_back(namedMotor(model, name));
   if (motors.empty()) {
-    refuse("plant/motors must list the joints that have a motor, since ", model.uri(),
-           " has none: there are ", boost::algorithm::join(model.names(mjOBJ_JOINT), ", "));
+    refuseModel("plant/motors must list the joints that have a motor, since ", model.uri(),
+                " has none: there are ", boost::algorithm::join(model.names(mjOBJ_JOINT), ", "));
   }
   std::set<int> joints;
   for (const Motor& motor : motors) {
     if (joints.insert(motor.joint).second) continue;
-    refuse("plant/motors must differ, got two for the joint ", model.name(mjOBJ_JOINT, motor.joint),
-           " of ", model.uri());
+    refuseModel("plant/motors must differ, got two for the joint ",
+                model.name(mjOBJ_JOINT, motor.joint), " of ", model.uri());
   }
   return motors;
 }
@@ -124,8 +124,8 @@ std::vector<double> limitsOf(const MujocoModel& model, const MujocoOptions& opti
   const std::vector<Motor> motors = motorsOf(model, options);
   const std::vector<double>& given = options.max_torque;
   if (given.size() > 1 && given.size() != motors.size()) {
-    refuse("plant/max_torque must be one number, or one for each of the ", motors.size(),
-           " motors, got ", given.size());
+    refuseModel("plant/max_torque must be one number, or one for each of the ", motors.size(),
+                " motors, got ", given.size());
   }
   std::vector<double> limits;
   for (std::size_t i = 0; i < motors.size(); ++i) {
@@ -133,7 +133,7 @@ std::vector<double> limitsOf(const MujocoModel& model, const MujocoOptions& opti
     // Many files from CAD exporters have effort 0 as a placeholder for an unknown limit.
     const double allowed = motors[i].limit.value_or(0.0);
     if (given.empty() && allowed == 0.0) {
-      refuse(
+      refuseModel(
           "plant/max_torque must be given, because ", model.uri(),
           (motors[i].limit ? " has a limit of 0" : " has no limit"), " for the motor of the joint ",
           joint,
@@ -141,8 +141,8 @@ std::vector<double> limitsOf(const MujocoModel& model, const MujocoOptions& opti
     }
     const double limit = given.empty() ? allowed : given[given.size() == 1 ? 0 : i];
     if (allowed > 0.0 && limit > allowed * (1.0 + 1e-9)) {
-      refuse("plant/max_torque must be at most what ", model.uri(), " allows, ", allowed,
-             " at the joint ", joint, ", got ", limit);
+      refuseModel("plant/max_torque must be at most what ", model.uri(), " allows, ", allowed,
+                  " at the joint ", joint, ", got ", limit);
     }
     limits.push_back(limit);
   }
@@ -186,7 +186,7 @@ MotorChoice chosenMotors(const MujocoModel& model, const std::vector<ModelJoint>
     choice.joints = chosen;
     return choice;
   }
-  refuse(
+  refuseModel(
       "name the joints that have a motor, because the file does not say which one or two: "
       "--motors with some of ",
       boost::algorithm::join(candidates, ","));

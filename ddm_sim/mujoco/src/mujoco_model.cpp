@@ -31,11 +31,12 @@ std::string pathOf(const std::string& uri, const FindPackage& find_package) {
   const std::string path = resolved(uri, find_package);
   std::error_code none;
   if (fs::is_regular_file(path, none)) return path;
-  if (fs::is_directory(path, none)) refuse(path, " is a folder: name the model file in it");
-  if (fs::exists(path, none)) refuse(path, " is a pipe or device: write the model into a file");
+  if (fs::is_directory(path, none)) refuseModel(path, " is a folder: name the model file in it");
+  if (fs::exists(path, none))
+    refuseModel(path, " is a pipe or device: write the model into a file");
   if (fs::is_symlink(path, none)) {
-    refuse(path, " is a link to ", fs::read_symlink(path, none).string(),
-           ", where there is no file: correct the link");
+    refuseModel(path, " is a link to ", fs::read_symlink(path, none).string(),
+                ", where there is no file: correct the link");
   }
   std::vector<std::string> there;
   for (const fs::directory_entry& entry :
@@ -45,7 +46,8 @@ std::string pathOf(const std::string& uri, const FindPackage& find_package) {
     if (model && entry.is_regular_file(none)) there.push_back(name.string());
   }
   std::sort(there.begin(), there.end());
-  refuse("there is no file ", path, ": ", suggestion(fs::path(path).filename().string(), there));
+  refuseModel("there is no file ", path, ": ",
+              suggestion(fs::path(path).filename().string(), there));
 }
 
 /// Stops drawing the collision shapes (group 0) of links that also have visual shapes (group 1),
@@ -156,7 +158,7 @@ std::string readable(std::string error, const ModelText& text) {
 
 MujocoModel::MujocoModel(const std::string& uri, const FindPackage& find_package) : uri_(uri) {
   if (uri.empty()) {
-    refuse(
+    refuseModel(
         "plant/model must name a model file (MJCF or URDF), got nothing: for example "
         "package://PACKAGE/robot.urdf");
   }
@@ -181,18 +183,19 @@ MujocoModel::MujocoModel(const std::string& uri, const FindPackage& find_package
       if (!isLit(*model)) light(model.get());
       model_ = std::move(model);
     } else {
-      refuse("its outermost element must be <mujoco> (MJCF) or <robot> (URDF), got <", root, ">",
-             hintForRoot(root));
+      refuseModel("its outermost element must be <mujoco> (MJCF) or <robot> (URDF), got <", root,
+                  ">", hintForRoot(root));
     }
   } catch (const std::exception& e) {
     const std::string hint = hintFor(e.what());
-    refuse("plant/model must be a model that MuJoCo can read, got ", uri, ": ",
-           readable(e.what(), given),
-           files.missing.empty() ? ""
-                                 : "; it names files that are not there: " + files.missing +
-                                       " (all paths count from the folder of the model file, also "
-                                       "those in included files)",
-           hint.empty() ? "" : "; ", hint);
+    refuseModel("plant/model must be a model that MuJoCo can read, got ", uri, ": ",
+                readable(e.what(), given),
+                files.missing.empty()
+                    ? ""
+                    : "; it names files that are not there: " + files.missing +
+                          " (all paths count from the folder of the model file, also "
+                          "those in included files)",
+                hint.empty() ? "" : "; ", hint);
   }
   digest_ = files.digest;
 }
@@ -203,8 +206,8 @@ int MujocoModel::id(mjtObj type, const std::string& name, const std::string& key
   const std::vector<std::string> all = names(type);  // includes the names that name() makes up
   const auto found = std::find(all.begin(), all.end(), name);
   if (found != all.end()) return static_cast<int>(found - all.begin());
-  refuse(key, " must name a ", mju_type2Str(type), " of ", uri_, ", got ", name, ": ",
-         suggestion(name, all));
+  refuseModel(key, " must name a ", mju_type2Str(type), " of ", uri_, ", got ", name, ": ",
+              suggestion(name, all));
 }
 
 Place MujocoModel::place(const std::string& name, const std::string& key) const {
@@ -216,7 +219,7 @@ Place MujocoModel::place(const std::string& name, const std::string& key) const 
     std::string parent = name;
     while (urdf_.fixed.count(parent) > 0) parent = urdf_.fixed.at(parent);
     const bool moves = mj_name2id(model_.get(), mjOBJ_BODY, parent.c_str()) > 0;
-    refuse(
+    refuseModel(
         key, " must name a link of ", uri_, " that a joint moves, got ", name,
         ", which is behind a fixed joint: links behind fixed joints are merged into their parent; ",
         moves ? "name that one, " + parent + ", or " : "this one does not move; ",
@@ -224,8 +227,8 @@ Place MujocoModel::place(const std::string& name, const std::string& key) const 
   }
   std::vector<std::string> known = names(mjOBJ_SITE);
   for (const std::string& body : names(mjOBJ_BODY)) known.push_back(body);
-  refuse(key, " must name a site or body (link) of ", uri_, ", got ", name, ": ",
-         suggestion(name, known));
+  refuseModel(key, " must name a site or body (link) of ", uri_, ", got ", name, ": ",
+              suggestion(name, known));
 }
 
 std::string MujocoModel::name(mjtObj type, int id) const {

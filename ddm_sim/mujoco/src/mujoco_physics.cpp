@@ -33,18 +33,20 @@ void requirePositionsAndRates(const MujocoModel& model) {
   const mjModel& m = model.get();
   for (int i = 0; i < m.njnt; ++i) {
     if (m.jnt_type[i] == mjJNT_HINGE || m.jnt_type[i] == mjJNT_SLIDE) continue;
-    refuse("plant/model must have hinges and slides alone, got the ",
-           m.jnt_type[i] == mjJNT_FREE ? "free" : "ball", " joint ", model.name(mjOBJ_JOINT, i),
-           " of ", model.uri(), ": fix that body, or move it by hinges and slides");
+    refuseModel("plant/model must have hinges and slides alone, got the ",
+                m.jnt_type[i] == mjJNT_FREE ? "free" : "ball", " joint ",
+                model.name(mjOBJ_JOINT, i), " of ", model.uri(),
+                ": fix that body, or move it by hinges and slides");
   }
-  if (m.njnt == 0) refuse("plant/model must have a joint that moves, got none in ", model.uri());
+  if (m.njnt == 0)
+    refuseModel("plant/model must have a joint that moves, got none in ", model.uri());
   for (int i = 0; i < m.nv; ++i) {
     const bool damped = m.dof_damping[i] >= 0.0;
     if (damped && m.dof_frictionloss[i] >= 0.0) continue;
-    refuse("the joint ", model.name(mjOBJ_JOINT, m.dof_jntid[i]), " of ", model.uri(),
-           " must have a ", damped ? "friction" : "damping", " >= 0, got ",
-           damped ? m.dof_frictionloss[i] : m.dof_damping[i],
-           ", which drives the joint: correct its sign");
+    refuseModel("the joint ", model.name(mjOBJ_JOINT, m.dof_jntid[i]), " of ", model.uri(),
+                " must have a ", damped ? "friction" : "damping", " >= 0, got ",
+                damped ? m.dof_frictionloss[i] : m.dof_damping[i],
+                ", which drives the joint: correct its sign");
   }
 }
 
@@ -53,7 +55,7 @@ double timestepOf(const MujocoModel& model, const MujocoOptions& options) {
   if (options.timestep > 0.0) return options.timestep;
   const double timestep = model.get().opt.timestep;
   if (timestep >= kSmallest) return timestep;
-  refuse(
+  refuseModel(
       "the timestep of ", model.uri(), " must be at least ", kSmallest, " s, got ", timestep,
       ": write <option timestep=\"0.002\"/> in the file, or set plant/timestep in the plant file");
 }
@@ -209,8 +211,8 @@ Eigen::VectorXd MujocoPhysics::reach(const Place& place, const Eigen::Vector2d& 
     }
     if (approach(place, point, &state)) return state;
   }
-  refuse("the target must be within reach of ", model_->name(place.type, place.id), " of ",
-         model_->uri(), ", got ", fewNumbers(point));
+  refuseModel("the target must be within reach of ", model_->name(place.type, place.id), " of ",
+              model_->uri(), ", got ", fewNumbers(point));
 }
 
 }  // namespace ddm

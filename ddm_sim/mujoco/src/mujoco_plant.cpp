@@ -27,8 +27,8 @@ Eigen::VectorXd stateOf(const std::vector<double>& numbers, int num_joints, cons
   Eigen::VectorXd state = Eigen::VectorXd::Zero(2 * num_joints);
   const auto count = static_cast<Eigen::Index>(numbers.size());
   if (count != 0 && count != num_joints && count != 2 * num_joints) {
-    refuse("plant/", key, " must have a number for each of the ", num_joints,
-           " joints, or one for each and then one for each rate, got ", count);
+    refuseModel("plant/", key, " must have a number for each of the ", num_joints,
+                " joints, or one for each and then one for each rate, got ", count);
   }
   std::copy(numbers.begin(), numbers.end(), state.data());
   return state;
@@ -42,13 +42,13 @@ int framesOf(const MujocoModel& model, const MujocoOptions& options) {
   const double step = timestepOf(model, options);
   const double frames = std::max(1.0, std::round(dt / step));
   if (!(frames <= kMaxFrames)) {
-    refuse("plant/timestep must divide plant/dt into at most 1000000 frames, got ", step,
-           " s, which is ", frames, " frames in plant/dt: use a larger plant/timestep");
+    refuseModel("plant/timestep must divide plant/dt into at most 1000000 frames, got ", step,
+                " s, which is ", frames, " frames in plant/dt: use a larger plant/timestep");
   }
   if (std::abs(frames * step - dt) <= 1e-9 * dt) return static_cast<int>(frames);
-  refuse("plant/dt must be a whole multiple of the timestep of ",
-         options.timestep > 0.0 ? "plant/timestep" : model.uri(), ", ", step, " s, got ", dt,
-         ": the nearest is ", frames * step);
+  refuseModel("plant/dt must be a whole multiple of the timestep of ",
+              options.timestep > 0.0 ? "plant/timestep" : model.uri(), ", ", step, " s, got ", dt,
+              ": the nearest is ", frames * step);
 }
 
 /// Name of a joint, for the columns of CSV files.
@@ -56,7 +56,7 @@ int framesOf(const MujocoModel& model, const MujocoOptions& options) {
 std::string columnOf(const MujocoModel& model, int joint) {
   const std::string name = model.name(mjOBJ_JOINT, joint);
   if (usableName(name)) return name;
-  refuse(
+  refuseModel(
       "the joint \"", name, "\" of ", model.uri(),
       " must have a name of ASCII characters without blanks, commas and double quotes, because it "
       "heads columns of CSV files: rename it in the file, or give plant/state_names and "
@@ -93,15 +93,15 @@ std::vector<int> errorJoints(const MujocoModel& model, const MujocoOptions& opti
   for (int i = 0; options.error_joints.empty() && i < model.get().njnt; ++i) joints.push_back(i);
   const auto as_first = [&](int i) { return isHinge(model, i) == isHinge(model, joints[0]); };
   if (std::all_of(joints.begin(), joints.end(), as_first)) return joints;
-  refuse(
+  refuseModel(
       "plant/error_joints must be hinges or slides alone, whose errors have one unit, got both: "
       "list some of them, or sites or links in plant/error_sites");
 }
 
 int evaluationSteps(const MujocoOptions& options, int frames) {
   if (options.episode_frames % frames != 0) {
-    refuse("plant/episode_frames must be whole time steps of plant/dt, which is ", frames,
-           " frames, got ", options.episode_frames);
+    refuseModel("plant/episode_frames must be whole time steps of plant/dt, which is ", frames,
+                " frames, got ", options.episode_frames);
   }
   return options.episode_frames / frames;
 }
@@ -117,13 +117,14 @@ PlantInfo infoOf(const MujocoModel& model, const MujocoOptions& options) {
   }
   info.state_names = stateNames(model, options);
   if (info.stateDim() != 2 * n) {
-    refuse("plant/state_names must have a name for each joint and then one for each rate, got ",
-           info.stateDim());
+    refuseModel(
+        "plant/state_names must have a name for each joint and then one for each rate, got ",
+        info.stateDim());
   }
   info.torque_names = torqueNames(model, options);
   const std::vector<double> limits = limitsOf(model, options);
   if (info.torque_names.size() != limits.size()) {
-    refuse("plant/torque_names must have a name for each motor, got ", info.torqueDim());
+    refuseModel("plant/torque_names must have a name for each motor, got ", info.torqueDim());
   }
   info.max_torque = forEach(limits, info.torqueDim(), "plant/max_torque");
   info.dt = options.dt;
@@ -172,9 +173,9 @@ const Reward* rewardOf(const MujocoOptions& options, const PlantInfo& info) {
     if (reward.name != options.reward) continue;
     const int joints = static_cast<int>(info.joints.size());
     if (reward.num_joints == joints && reward.num_motors == info.torqueDim()) return &reward;
-    refuse("plant/reward must be one for ", joints, " joints and ", info.torqueDim(),
-           " motors, got ", reward.name, ", which is for ", reward.num_joints, " and ",
-           reward.num_motors);
+    refuseModel("plant/reward must be one for ", joints, " joints and ", info.torqueDim(),
+                " motors, got ", reward.name, ", which is for ", reward.num_joints, " and ",
+                reward.num_motors);
   }
   return nullptr;
 }
@@ -228,7 +229,8 @@ Eigen::VectorXd MujocoPlant::drawGoal(std::mt19937_64& engine) const {
 Eigen::VectorXd MujocoPlant::goalAt(const Eigen::VectorXd& target) const {
   if (goal_site_.empty()) return Plant::goalAt(target);
   if (target.size() != 2 || !target.allFinite()) {
-    refuse("plant: the target must be two finite numbers, x and y [m], got ", fewNumbers(target));
+    refuseModel("plant: the target must be two finite numbers, x and y [m], got ",
+                fewNumbers(target));
   }
   return physics_->reach(goal_site_[0], target, info().goal);
 }
@@ -293,7 +295,7 @@ MujocoOptions completed(MujocoOptions options, const MujocoModel& model) {
   requirePositionsAndRates(model);
   const std::string& digest = model.digest();
   if (!options.model_digest.empty() && options.model_digest != digest) {
-    refuse(
+    refuseModel(
         "plant/model_digest must be that of ", model.uri(), " and the files that it names, ",
         digest, ", got ", options.model_digest,
         ": one of them has changed since this configuration was saved; put it back, or begin anew "

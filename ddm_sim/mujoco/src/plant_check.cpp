@@ -85,15 +85,16 @@ void requireVisible(const std::shared_ptr<const MujocoModel>& model, const Mujoc
   const CameraModel camera = *plant.cameraModel();
   const Eigen::Vector3d center(m.stat.center);
   const double depth = m.vis.map.zfar * m.stat.extent;  // largest distance that MuJoCo draws [m]
-  refuse("plant/camera must show the motion of ", model->uri(),
-         ", but its images are equal in all poses: ", whyUnseen(m, first), ". The camera is at ",
-         point(camera.position), ", looks along ", point(camera.rotation.col(2)), " and sees ",
-         std::round(camera.fovy * 180.0 / kPi), " deg; the middle of the model is at ",
-         point(center), ", its size is ", std::round(1e3 * m.stat.extent) / 1e3, " m",
-         (camera.position - center).norm() <= depth
-             ? ""
-             : textOf("; nothing farther than ", depth,
-                      " m is drawn: correct <statistic extent> or <map zfar> of the file"));
+  refuseModel("plant/camera must show the motion of ", model->uri(),
+              ", but its images are equal in all poses: ", whyUnseen(m, first),
+              ". The camera is at ", point(camera.position), ", looks along ",
+              point(camera.rotation.col(2)), " and sees ", std::round(camera.fovy * 180.0 / kPi),
+              " deg; the middle of the model is at ", point(center), ", its size is ",
+              std::round(1e3 * m.stat.extent) / 1e3, " m",
+              (camera.position - center).norm() <= depth
+                  ? ""
+                  : textOf("; nothing farther than ", depth,
+                           " m is drawn: correct <statistic extent> or <map zfar> of the file"));
 }
 
 PlantCheck checkPlant(const PlantProposal& proposal, Plant* plant) {

@@ -45,8 +45,8 @@ class MeshNames {
                                      : "is not there: correct its name, or fetch the package that "
                                        "holds it";
     if (!mistaken.empty()) {
-      refuse("the mesh \"", named, "\" in line ", mesh->GetLineNum(), " ", mistaken, " (",
-             file.string(), ")");
+      refuseModel("the mesh \"", named, "\" in line ", mesh->GetLineNum(), " ", mistaken, " (",
+                  file.string(), ")");
     }
     std::string& name = names_[{file.string(), attribute(*mesh, "scale")}];
     if (name.empty()) {
@@ -60,10 +60,10 @@ class MeshNames {
   void requireReadable() const {
     if (unreadable_.empty()) return;
     const fs::path first(*unreadable_.begin());
-    refuse("it has meshes that are no STL, OBJ or MSH files, which MuJoCo reads: ",
-           join(unreadable_, ", "), "; convert each, for example by `assimp export ",
-           first.filename().string(), " ", first.stem().string(),
-           ".stl` (Debian's assimp-utils), and name the new files in the model");
+    refuseModel("it has meshes that are no STL, OBJ or MSH files, which MuJoCo reads: ",
+                join(unreadable_, ", "), "; convert each, for example by `assimp export ",
+                first.filename().string(), " ", first.stem().string(),
+                ".stl` (Debian's assimp-utils), and name the new files in the model");
   }
 
   std::vector<std::pair<std::string, std::string>> files;  ///< pairs of new name and file

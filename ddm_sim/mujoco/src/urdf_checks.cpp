@@ -107,8 +107,8 @@ void requireNoXacro(XMLElement* root) {
       }
     }
     if (found.empty()) return;
-    refuse("line ", element->GetLineNum(), " has ", found,
-           ", this is xacro: run xacro FILE > robot.urdf, and name that file");
+    refuseModel("line ", element->GetLineNum(), " has ", found,
+                ", this is xacro: run xacro FILE > robot.urdf, and name that file");
   });
 }
 
@@ -164,8 +164,8 @@ void requireTree(const std::vector<XMLElement*>& links, const std::vector<XMLEle
     if (!isOneOf(roots, link)) roots.push_back(link);
   }
   if (roots.size() == 1) return;
-  refuse("the robot must have one root link, got ", join(roots, ", "),
-         ": connect these links by fixed joints, or remove those of no use");
+  refuseModel("the robot must have one root link, got ", join(roots, ", "),
+              ": connect these links by fixed joints, or remove those of no use");
 }
 
 XMLElement* requireShape(const XMLElement& link, const XMLElement& part) {
@@ -223,7 +223,7 @@ void requireNoCycle(const std::map<std::string, std::string>& leaders) {
     while (leaders.count(chain.back()) > 0 && chain.size() <= leaders.size()) {
       chain.push_back(leaders.at(chain.back()));
       if (chain.back() != one.first) continue;
-      refuse(
+      refuseModel(
           "the joints ", join(chain, " -> "),
           " mimic each other in a cycle: remove one <mimic>, so that one of them moves by itself");
     }

@@ -49,9 +49,10 @@ bool isUtf8(const std::string& text) {
 void requireUtf8(const XMLElement& element) {
   for (auto* one = element.FirstAttribute(); one != nullptr; one = one->Next()) {
     if (isUtf8(one->Value())) continue;
-    refuse("the attribute ", one->Name(), " in line ", element.GetLineNum(),
-           " is not in UTF-8: convert the file, for example by `iconv -f LATIN1 -t UTF-8 FILE > "
-           "NEW_FILE`");
+    refuseModel(
+        "the attribute ", one->Name(), " in line ", element.GetLineNum(),
+        " is not in UTF-8: convert the file, for example by `iconv -f LATIN1 -t UTF-8 FILE > "
+        "NEW_FILE`");
   }
 }
 
@@ -96,16 +97,16 @@ std::string mistakenFor(const std::string& bytes) {
 
 XmlDocument parseXml(const std::string& text) {
   const std::string mistaken = mistakenFor(text);
-  if (!mistaken.empty()) refuse("it ", mistaken);
+  if (!mistaken.empty()) refuseModel("it ", mistaken);
   if (begins(text, "solid") || text.find('\0') != std::string::npos) {
-    refuse("it is no XML: if it is a mesh, name the URDF or MJCF file that uses it");
+    refuseModel("it is no XML: if it is a mesh, name the URDF or MJCF file that uses it");
   }
   auto document = std::make_unique<tinyxml2::XMLDocument>();
   if (document->Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
-    refuse("line ", document->ErrorLineNum(), " is not XML: ", document->ErrorStr(),
-           whyBroken(text));
+    refuseModel("line ", document->ErrorLineNum(), " is not XML: ", document->ErrorStr(),
+                whyBroken(text));
   }
-  if (document->RootElement() == nullptr) refuse("it has no XML element");
+  if (document->RootElement() == nullptr) refuseModel("it has no XML element");
   forEachElement(document->RootElement(), [](XMLElement* element) { requireUtf8(*element); });
   return document;
 }

@@ -47,7 +47,7 @@ std::string placeOf(const XMLElement& element);
 ///         never returns
 template <class... Parts>
 [[noreturn]] void refuseElement(const XMLElement& element, const Parts&... parts) {
-  refuse(placeOf(element), " ", parts...);
+  refuseModel(placeOf(element), " ", parts...);
 }
 
 }  // namespace ddm

@@ -1,4 +1,4 @@
-// Collects the invalid values of a block, and suggests the correct spelling of a name.
+// Builds error messages: the invalid values of a block, and the correct spelling of a name.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -12,6 +12,14 @@
 #include <vector>
 
 namespace ddm {
+
+/// Concatenates the parts; numbers are written as a stream writes them.
+template <class... Parts>
+std::string textOf(const Parts&... parts) {
+  std::ostringstream text;
+  (text << ... << parts);
+  return text.str();
+}
 
 // NaN and infinity are refused: no length or mass is infinite.
 inline bool isPositive(double value) {

@@ -2,24 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ddm_common/option_checks.h>
 #include <ros/time.h>
 
 #include <cmath>
 #include <cstdio>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace ddm {
-
-/// @return the parts one after the other, as a stream writes them
-template <class... Parts>
-std::string textOf(const Parts&... parts) {
-  std::ostringstream text;
-  (text << ... << parts);
-  return text.str();
-}
 
 /// @return a time as text, such as "1700000000.020000 s"
 inline std::string timeText(const ros::Time& time) { return std::to_string(time.toSec()) + " s"; }
@@ -33,7 +25,7 @@ inline std::string secondsText(double seconds) {
 
 /// @throws std::runtime_error with the parts as its text, which give the fault and the remedy
 template <class... Parts>
-[[noreturn]] void refuse(const Parts&... parts) {
+[[noreturn]] void refuseBag(const Parts&... parts) {
   throw std::runtime_error(textOf(parts...));
 }
 
