@@ -12,7 +12,7 @@
 
 namespace ddm {
 
-/// What the user gave on the command line or in a launch file.
+/// Options from the command line or from a launch file.
 struct Arguments {
   /// Configurations of a launch file, as `configs`, but preset, plant and method override them.
   std::vector<std::string> defaults;

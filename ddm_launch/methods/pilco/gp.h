@@ -159,7 +159,7 @@ GpFit trainSparseGp(const Eigen::MatrixXd& start, const Eigen::MatrixXd& inputs,
                     const Eigen::MatrixXd& targets, const Hyperparameters& hyperparameters,
                     int max_iterations, const std::function<void()>& on_evaluation = nullptr);
 
-/// What learnGp() keeps from one trial to the next.
+/// State of learnGp() between two trials.
 struct GpLearnerState {
   Hyperparameters hyperparameters;  ///< latest optimum; empty before the first training
   Eigen::MatrixXd inducing;         ///< latest inducing inputs; empty before the first sparse GP

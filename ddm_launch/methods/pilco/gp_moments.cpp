@@ -263,7 +263,7 @@ Gaussian GpMoments::backward(const Tape& tape, const Moments& d_output) const {
 void GpMoments::backwardToModel(const Tape& tape, const Moments& d_output,
                                 GpGradient* d_model) const {
   const int outputs = model_.outputDim();
-  eigen_assert(model_.inverse.empty());  // derivatives of the model uncertainty are not implemented
+  eigen_assert(model_.inverse.empty());  // a policy: its model has no uncertainty
   meanToModel(tape, d_output, d_model);
   for (int b = 0; b < outputs; ++b) {
     for (int a = 0; a <= b; ++a) {
