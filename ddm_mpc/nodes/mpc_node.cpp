@@ -146,7 +146,8 @@ void MpcNode::beginIfReady(std::unique_lock<std::mutex> lock) {
 void MpcNode::prepare() {
   const std::shared_ptr<TrialRun> trial = preparedTrial();
   if (trial == nullptr || !trial->startIsGiven() || trial->lastAnswered()) return;
-  if (last_image_ != nullptr) answer(*last_image_);
+  const sensor_msgs::ImageConstPtr image = last_image_;
+  if (image != nullptr) answer(*image);
 }
 
 /// Prepares the trial unless that is done. Releases the lock meanwhile, up to two seconds.
@@ -200,6 +201,7 @@ void MpcNode::answer(const sensor_msgs::Image& image) {
     if (trial->result().num_steps == 0) scalars_.forget();
     trial->collect(image.header.stamp, *decision);
     publish(image.header, *decision);
+    last_image_.reset();  // no later trial may begin with it, even if the clock is set back
     if (!trial->done()) return;
   } else {
     return;

@@ -101,7 +101,8 @@ class MpcNode {
   std::uint32_t fed_back_ = 0;           // steps in the last feedback
 
   // Used only by the image thread.
-  sensor_msgs::ImageConstPtr last_image_;  // may belong to a trial whose goal is still to come
+  // Not yet answered; may belong to a trial whose goal is still to come. Null: none
+  sensor_msgs::ImageConstPtr last_image_;
   PlanScalars scalars_;
   ros::SteadyTime last_plan_log_;
 

@@ -106,7 +106,7 @@ TEST_F(MpcNodeHealthTest, TellsHowFarTheGoalIsAndHowWrongTheLastPredictionWas) {
 TEST_F(MpcNodeHealthTest, ReportsCameraTorqueAndPlansOfATrial) {
   ASSERT_TRUE(waitUntil([&] { return !diagnostics_.messages.empty(); }));
   beginPlanning(20, 0.0);
-  while (torque_.messages.size() < 20U) show(torque_.messages.size() + 1);
+  show(20);
   expectEnd(State::SUCCEEDED);
   const std::string model_id = modelOfSeed(31).id;
   EXPECT_TRUE(waitUntil([&] {
@@ -140,6 +140,21 @@ TEST_F(MpcNodeHealthTest, WarnsWhileATrialWaitsForAnImageOrItsModel) {
   action_.cancelGoal();
   expectEnd(State::PREEMPTED);
   EXPECT_TRUE(reports("model", DiagnosticStatus::OK, "of trial "));
+}
+
+TEST_F(MpcNodeHealthTest, ATrialDoesNotBeginWithAnImageOfAnEarlierTrialAfterTheClockIsSetBack) {
+  begin(trialGoal(2, 1.0));
+  show(2);
+  expectEnd(State::SUCCEEDED);
+  client_.passTime(-100.0);
+  ddm_msgs::RunTrialGoal goal = trialGoal(1, 1.0);
+  goal.start = client_.nextStamp();
+  begin(goal);
+  EXPECT_TRUE(reports("camera", DiagnosticStatus::WARN, "no image for "));  // it is prepared
+  EXPECT_EQ(torque_.messages.size(), 2U);
+  show(3);
+  expectEnd(State::SUCCEEDED);
+  EXPECT_EQ(torque_.messages.back().header.stamp, stamps_.back());
 }
 
 TEST_F(MpcNodeHealthTest, ReportsPlansThatFailAsAnError) {
