@@ -42,14 +42,14 @@ main() {
   [[ " $* " != *" --help "* ]] || { echo "$usage" && exit 0; }
   [[ "$*" =~ ^(bullseye|bookworm|trixie)\ (demo|test)$ ]] || { printf "bad arguments '%s'\n\n%s\n" "$*" "$usage" >&2 && exit 2; }
   suite=$1 script=$2
-  local tool folder code=0
+  local tool code=0
   for tool in debootstrap unshare git; do
     command -v "$tool" >/dev/null || fail "$tool is not installed. Remedy: install it by your package manager."
   done
   [[ $(id -u) == 0 ]] || fail "only root can make a system. Remedy: call this script as root."
   mirror=${DEBIAN_MIRROR:-$(default_mirror)}
   [[ -n $mirror ]] || fail "this machine's apt names no Debian mirror. Remedy: set DEBIAN_MIRROR."
-  folder=$(mktemp -d)
+  folder=$(mktemp -d)  # not local, because the trap runs after main
   trap 'rm -rf --one-file-system "$folder"' EXIT
   say "$suite, commit $(git -C "$checkout" rev-parse --short HEAD): $script"
   root=$folder/root
