@@ -5,7 +5,9 @@
 #include <ddm_model/trainer.h>
 #include <ddm_mpc/controller.h>
 
+#include <memory>
 #include <stdexcept>
+#include <utility>
 
 #include "method.h"
 #include "start.h"
@@ -27,19 +29,28 @@ class DdmMethod : public Method {
                         const PhaseCallback& progress) override;
 
   std::shared_ptr<Policy> policy() const override {
-    if (model_ == nullptr) return nullptr;
-    return std::make_shared<MpcPolicy>(model_, configuration_.mpc);
+    if (policy_ == nullptr && model_ != nullptr) {
+      policy_ = std::make_shared<MpcPolicy>(model_, configuration_.mpc);
+    }
+    return policy_;
   }
 
   bool useModel(const std::string& path) override {
-    model_ = readModel(path);
+    setModel(readModel(path));
     return true;
   }
 
  private:
+  void setModel(std::shared_ptr<const Ddm> model) {
+    model_ = std::move(model);
+    policy_.reset();
+  }
+
   const Configuration& configuration_;
   BagCache bags_;
   std::shared_ptr<const Ddm> model_;
+  // All trials of a model share its policy, because the cost-to-go takes up to two seconds.
+  mutable std::shared_ptr<Policy> policy_;
 };
 
 TrainingOutcome DdmMethod::train(const std::vector<std::string>& bags, const TrialId& id,
@@ -55,7 +66,7 @@ TrainingOutcome DdmMethod::train(const std::vector<std::string>& bags, const Tri
                    return true;
                  });
   if (!result.model) throw std::runtime_error(result.message);
-  model_ = std::make_shared<const Ddm>(*result.model);
+  setModel(std::make_shared<const Ddm>(*result.model));
   TrainingOutcome outcome;
   outcome.files["model.ddm"] = serialiseModel(*model_);
   outcome.frames = model_->info().frames;
