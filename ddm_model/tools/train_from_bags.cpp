@@ -82,18 +82,7 @@ YAML::Node readConfigs(const Arguments& arguments, std::string* limits_from) {
   for (const std::string& file : arguments.configs) ddm::overlay(ddm::readBlocks(file), &blocks);
   ddm::overlay(arguments.data_set, &blocks);
   for (const std::string& value : arguments.values) ddm::setValue(value, &blocks);
-  const std::string owner =
-      ddm::hasKey(blocks, "model", "max_torque") ? "model" : ddm::ownerOfMotors(blocks);
-  if (owner.empty() && ddm::hasKey(blocks, "plant", "model")) {
-    throw std::invalid_argument(
-        "plant/max_torque must be given here, since this program does not read the model file " +
-        blocks["plant"]["model"].as<std::string>() + ": `simulate --describe` prints it");
-  }
-  *limits_from = owner.empty() ? "the default" : owner + "/max_torque";
-  const YAML::Node model = blocks["model"];
-  if (!owner.empty() && owner != "model" && (!model.IsDefined() || model.IsMap())) {
-    blocks["model"]["max_torque"] = YAML::Clone(blocks[owner]["max_torque"]);
-  }
+  *limits_from = ddm::takeOverLimits("model", &blocks);
   return blocks;
 }
 

@@ -131,11 +131,23 @@ bool hasKey(const YAML::Node& blocks, const std::string& block, const std::strin
   return values.IsDefined() && values.IsMap() && values[key].IsDefined();
 }
 
-std::string ownerOfMotors(const YAML::Node& blocks) {
-  const std::string owner = blocks["robot"].IsDefined() ? "robot" : "plant";
-  if (!hasKey(blocks, owner, "max_torque")) return "";
-  const YAML::Node limits = blocks[owner]["max_torque"];
-  return limits.IsSequence() && limits.size() == 0 ? "" : owner;
+std::string takeOverLimits(const std::string& learner, YAML::Node* blocks) {
+  const bool given = hasKey(*blocks, learner, "max_torque");
+  const std::string owner = given ? learner : (*blocks)["robot"].IsDefined() ? "robot" : "plant";
+  if (!given && owner == "plant" && hasKey(*blocks, "plant", "model") &&
+      !hasKey(*blocks, "plant", "max_torque")) {
+    throw std::invalid_argument("plant/max_torque must be given here, since the model file " +
+                                (*blocks)["plant"]["model"].as<std::string>() +
+                                " is not read: `simulate --describe` prints it");
+  }
+  if (!hasKey(*blocks, owner, "max_torque")) return "the default";
+  const YAML::Node limits = (*blocks)[owner]["max_torque"];
+  if (!given && limits.IsSequence() && limits.size() == 0) return "the default";
+  const YAML::Node block = (*blocks)[learner];
+  if (!given && (!block.IsDefined() || block.IsMap())) {
+    (*blocks)[learner]["max_torque"] = YAML::Clone(limits);
+  }
+  return owner + "/max_torque";
 }
 
 }  // namespace ddm

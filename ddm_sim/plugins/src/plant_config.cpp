@@ -76,26 +76,6 @@ std::shared_ptr<PlantPlugin> makePlugin(const std::string& type) {
   }
 }
 
-/// Names of the plants that the folder config/ of a package describes.
-/// @throws std::invalid_argument if there is no such package
-std::vector<std::string> plantsOf(const std::string& package) {
-  const std::string path = ros::package::getPath(package);
-  if (path.empty()) {
-    throw std::invalid_argument("package " + package +
-                                " cannot be found: source the setup.bash of its workspace");
-  }
-  std::vector<std::string> names;
-  const fs::path folder = fs::path(path) / "config";
-  if (!fs::is_directory(folder)) return names;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    const fs::path name = entry.path().filename();
-    const bool of_a_plant = name.stem() != "sim" && name.stem() != "robot";
-    if (name.extension() == ".yaml" && of_a_plant) names.push_back(name.stem());
-  }
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
 }  // namespace
 
 std::shared_ptr<const PlantPlugin> readPlant(ParamReader* reader) {
@@ -112,6 +92,24 @@ std::shared_ptr<const PlantPlugin> readPlantFiles(std::vector<std::string> files
   const auto plant = readPlant(&params);
   params.requireValid();
   return plant;
+}
+
+std::vector<std::string> plantsOf(const std::string& package) {
+  const std::string path = ros::package::getPath(package);
+  if (path.empty()) {
+    throw std::invalid_argument("package " + package +
+                                " cannot be found: source the setup.bash of its workspace");
+  }
+  std::vector<std::string> names;
+  const fs::path folder = fs::path(path) / "config";
+  if (!fs::is_directory(folder)) return names;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    const fs::path name = entry.path().filename();
+    const bool of_a_plant = name.stem() != "sim" && name.stem() != "robot";
+    if (name.extension() == ".yaml" && of_a_plant) names.push_back(name.stem());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
 }
 
 bool namesPlantFile(const std::string& name) { return fs::path(name).extension() == ".yaml"; }

@@ -35,9 +35,11 @@ void setValue(const std::string& text, YAML::Node* blocks);
 /// Whether a block is a map that contains this key.
 bool hasKey(const YAML::Node& blocks, const std::string& block, const std::string& key);
 
-/// Returns the block whose `max_torque` defines the motors for all nodes that learn or plan:
-/// `robot`, or `plant` if there is no block `robot`. Empty if that block has no `max_torque` or an
-/// empty list.
-std::string ownerOfMotors(const YAML::Node& blocks);
+/// Sets max_torque of a learner to that of the robot or plant in `blocks`, unless `blocks` gives it.
+/// @param learner  block with the key max_torque: "model" or "mpc"
+/// @return the parameter that gives the limits, such as "plant/max_torque"; "the default" if there
+///         is none
+/// @throws std::invalid_argument if only the model file of the plant gives the limits
+std::string takeOverLimits(const std::string& learner, YAML::Node* blocks);
 
 }  // namespace ddm

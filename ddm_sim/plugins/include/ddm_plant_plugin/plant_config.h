@@ -23,6 +23,10 @@ std::shared_ptr<const PlantPlugin> readPlant(ParamReader* reader);
 /// @throws std::exception with the problems of the files, or as readPlant()
 std::shared_ptr<const PlantPlugin> readPlantFiles(std::vector<std::string> files);
 
+/// Names of the plants that the folder config/ of a package describes, sorted.
+/// @throws std::invalid_argument if there is no such package
+std::vector<std::string> plantsOf(const std::string& package);
+
 /// Whether the name of a plant is the path of its file, and not a name within a package.
 bool namesPlantFile(const std::string& name);
 
