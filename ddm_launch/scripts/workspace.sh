@@ -28,6 +28,8 @@ ros_setup() {
 packages_to_run=(
   # compiler and build tools; `study reproduce` also needs make
   build-essential cmake python3-setuptools
+  # Python bindings
+  pybind11-dev python3-dev
   # libraries
   libopencv-imgproc-dev libopencv-imgcodecs-dev libeigen3-dev libceres-dev libyaml-cpp-dev libbz2-dev
   libboost-dev libboost-program-options-dev libboost-filesystem-dev libbenchmark-dev

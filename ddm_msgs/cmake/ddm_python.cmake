@@ -1,0 +1,27 @@
+# Python bindings of the packages, which use pybind11.
+option(DDM_PYTHON "Build the Python bindings if pybind11 is installed" ON)
+
+set(DDM_BINDINGS OFF)  # whether this package gets bindings
+if(DDM_PYTHON AND NOT DDM_SANITIZE)  # a Python interpreter cannot load libraries of a sanitizer build
+  find_package(pybind11 2.4 QUIET)
+  if(pybind11_FOUND)
+    set(DDM_BINDINGS ON)
+  else()
+    message(STATUS "${PROJECT_NAME}: without Python bindings; they need pybind11-dev and python3-dev")
+  endif()
+endif()
+
+# Adds the Python module PACKAGE._core from python/core.cpp, and installs the type hints of the package. In devel and in
+# install space, the module is in the folder of the Python package. The arguments are the libraries of the module.
+function(ddm_add_python_module hints)
+  if(NOT DDM_BINDINGS)
+    return()
+  endif()
+  pybind11_add_module(${PROJECT_NAME}_python MODULE NO_EXTRAS python/core.cpp)
+  set_target_properties(${PROJECT_NAME}_python PROPERTIES OUTPUT_NAME _core
+                        LIBRARY_OUTPUT_DIRECTORY ${CATKIN_DEVEL_PREFIX}/${CATKIN_PACKAGE_PYTHON_DESTINATION})
+  target_link_libraries(${PROJECT_NAME}_python PRIVATE ${ARGN})
+  add_dependencies(${PROJECT_NAME}_python ${catkin_EXPORTED_TARGETS})
+  install(TARGETS ${PROJECT_NAME}_python LIBRARY DESTINATION ${CATKIN_PACKAGE_PYTHON_DESTINATION})
+  install(FILES ${hints} DESTINATION ${CATKIN_PACKAGE_PYTHON_DESTINATION})
+endfunction()
