@@ -36,7 +36,7 @@ packages_to_run=(
   # plants with a model file: physics, and images without a screen
   libmujoco-dev libegl-dev libegl1 libgl1-mesa-dri libtinyxml2-dev
   # tests
-  libgtest-dev
+  libgtest-dev python3-opencv
   # figures
   python3-matplotlib python3-numpy python3-pandas python3-pil python3-tqdm python3-yaml
   # sweeps

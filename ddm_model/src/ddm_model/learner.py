@@ -4,7 +4,11 @@ import os
 
 import roslib.packages
 
-from ddm_model import _core
+try:
+    from ddm_model import _core
+except ImportError as error:
+    raise ImportError("the Python bindings of ddm_model cannot be loaded (%s): install pybind11-dev, then build with "
+                      "-DDDM_PYTHON=ON" % error) from error
 
 Model = _core.Model
 

@@ -1,0 +1,39 @@
+# From bags to arrays, to a model, and to a report of the model on a bag that it has not learned from.
+# SPDX-License-Identifier: BSD-3-Clause
+import argparse
+import os
+
+import numpy as np
+
+import ddm_model
+from ddm_model import inspection
+from ddm_model.model_data import read_bags
+
+IMAGE_SIZE = 51  # [pixels]
+
+
+def episodes_in(path):
+    """Pairs (images [T, H, W], torques [T, m]) without gaps."""
+    bag = read_bags([path], IMAGE_SIZE)[0]
+    ends = np.cumsum(bag["segment_sizes"])[:-1]
+    return list(zip(np.split(bag["images"], ends), np.split(bag["torques"], ends)))
+
+
+def main():
+    parser = argparse.ArgumentParser(description="Trains on all bags but the last, and reports how the model predicts that bag.")
+    parser.add_argument("bags", nargs="+", metavar="BAG")
+    parser.add_argument("--preset", default="efficient")
+    parser.add_argument("--max-torque", type=float, nargs="+", required=True, help="limit of each motor [N m]")
+    parser.add_argument("--out", default="report", help="folder of model and report")
+    args = parser.parse_args()
+    episodes = [episode for path in args.bags[:-1] for episode in episodes_in(path)]
+    print("%d episodes with %d images" % (len(episodes), sum(len(images) for images, _ in episodes)))
+    model = ddm_model.train(episodes, goal=None, preset=args.preset, max_torque=args.max_torque)
+    os.makedirs(args.out, exist_ok=True)
+    path = os.path.join(args.out, "model.ddm")
+    model.save(path)
+    return inspection.main(["--model", path, "--out", args.out, args.bags[-1]])
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
