@@ -92,6 +92,19 @@ def test_an_experiment_runs_in_one_process_and_with_the_nodes(prefix, tmp_path):
     assert differences(process, nodes, torque_files(TRIALS)) == []
 
 
+@pytest.mark.skipif(not glob.glob(os.path.join(DEVEL, "lib", "python3*", "*-packages", "ddm_model", "_core*.so")),
+                    reason="the build is without Python bindings")
+def test_python_trains_and_acts(prefix, tmp_path):
+    script = ("import ddm_model, ddm_mpc, ddm_sim, numpy\n"
+              "env = ddm_sim.make('pendulum')\n"
+              "images, torques = numpy.array([env.reset()[0]] + [env.step([k % 5 - 2.0])[0] for k in range(29)]), numpy.ones((30, 1))\n"
+              "model = ddm_model.train([(images, torques)], images[0], preset='debug', plant=env)\n"
+              "print('torque', ddm_mpc.Controller(model, preset='debug', plant='pendulum').act(images[1]))")
+    assert "torque [" in run_installed(prefix, str(tmp_path), "/usr/bin/python3", "-c", script)
+    folder, = glob.glob(os.path.join(prefix, "lib", "python3*", "*-packages"))
+    assert all(os.path.isfile(os.path.join(folder, package, "__init__.pyi")) for package in ("ddm_model", "ddm_mpc", "ddm_sim"))
+
+
 def test_every_tool_shows_its_help(prefix, tmp_path):
     nodes = set()  # these programs are started only by launch files
     for path in glob.glob(os.path.join(CHECKOUT, "ddm_launch", "**", "*.launch"), recursive=True):

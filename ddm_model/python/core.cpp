@@ -32,20 +32,20 @@ DataSet dataOf(const py::iterable& episodes, const py::object& goal, int image_s
     const auto pair = py::reinterpret_borrow<py::sequence>(one);
     const Images images(pair[0], "images of " + name);
     const Eigen::MatrixXd torques =
-        matrixOf(pair[1], "torques of " + name, data ? data->torqueDim() : -1);
-    if (torques.rows() != images.count()) {
+        samplesOf(pair[1], "torques of " + name, data ? data->torqueDim() : -1);
+    if (torques.cols() != images.count()) {
       throw py::value_error(name + " must have one torque for each image, got " +
                             std::to_string(images.count()) + " images and " +
-                            std::to_string(torques.rows()) + " torques");
+                            std::to_string(torques.cols()) + " torques");
     }
     if (size.empty()) size = images.size();
     if (images.size() != size) {
       throw py::value_error("images of " + name + " must have the size of episode 0, " + size +
                             ", got " + images.size() + ": one camera takes all images");
     }
-    if (!data) data = std::make_unique<DataSet>(image_size, static_cast<int>(torques.cols()));
-    for (Eigen::Index t = 0; t < torques.rows(); ++t) {
-      data->append(images.grey(t, image_size), torques.row(t).transpose(), t == 0);
+    if (!data) data = std::make_unique<DataSet>(image_size, static_cast<int>(torques.rows()));
+    for (Eigen::Index t = 0; t < torques.cols(); ++t) {
+      data->append(images.grey(t, image_size), torques.col(t), t == 0);
     }
   }
   if (!data) {
@@ -154,11 +154,11 @@ py::array_t<double> encode(const Ddm& model, const py::object& images) {
 }
 
 py::array_t<std::uint8_t> decode(const Ddm& model, const py::object& features) {
-  const Eigen::MatrixXd all = matrixOf(features, "features", model.featureDim());
+  const Eigen::MatrixXd all = samplesOf(features, "features", model.featureDim());
   const Eigen::Index size = model.imageSize();
-  py::array_t<std::uint8_t> images({static_cast<Eigen::Index>(all.rows()), size, size});
-  for (Eigen::Index i = 0; i < all.rows(); ++i) {
-    const Grey image = model.decode(all.row(i).transpose());
+  py::array_t<std::uint8_t> images({all.cols(), size, size});
+  for (Eigen::Index i = 0; i < all.cols(); ++i) {
+    const Grey image = model.decode(all.col(i));
     std::copy(image.begin(), image.end(), images.mutable_data() + i * size * size);
   }
   return images;
@@ -169,19 +169,19 @@ Eigen::MatrixXd rollOut(const Ddm& model, const py::object& features, const py::
                         bool one_step) {
   const Eigen::Index order = model.options().order;
   const Eigen::Index memory = model.options().memory();
-  const Eigen::MatrixXd z = matrixOf(features, "features", model.featureDim());
-  const Eigen::MatrixXd u = matrixOf(torques, "torques", model.torqueDim());
-  const auto num_steps = static_cast<int>(u.rows() - memory + 1);
-  if (z.rows() != order || num_steps < 1 || (one_step && num_steps != 1)) {
+  const Eigen::MatrixXd z = samplesOf(features, "features", model.featureDim());
+  const Eigen::MatrixXd u = samplesOf(torques, "torques", model.torqueDim());
+  const auto num_steps = static_cast<int>(u.cols() - memory + 1);
+  if (z.cols() != order || num_steps < 1 || (one_step && num_steps != 1)) {
     throw py::value_error("features must have " + std::to_string(order) + " rows and torques " +
                           (one_step ? "" : "at least ") + std::to_string(memory) +
-                          ", the oldest first, got " + std::to_string(z.rows()) + " and " +
-                          std::to_string(u.rows()));
+                          ", the oldest first, got " + std::to_string(z.cols()) + " and " +
+                          std::to_string(u.cols()));
   }
   // A delay lets torques, but not features, reach back further than `order` samples.
-  Eigen::MatrixXd Z = Eigen::MatrixXd::Zero(z.cols(), u.rows());
-  Z.middleCols(memory - order, order) = z.transpose();
-  return model.rollOut(Z, u.transpose(), memory - 1, num_steps).rightCols(num_steps);
+  Eigen::MatrixXd Z = Eigen::MatrixXd::Zero(z.rows(), u.cols());
+  Z.middleCols(memory - order, order) = z;
+  return model.rollOut(Z, u, memory - 1, num_steps).rightCols(num_steps);
 }
 
 py::dict infoOf(const Ddm& model) {

@@ -13,25 +13,15 @@
 namespace ddm {
 namespace {
 
-/// The options of a controller: two blocks.
-struct ControlConfig {
-  MpcOptions mpc;
-  ControllerOptions controller;
-};
-
-YAML::Node toYaml(const ControlConfig& config) {
-  YAML::Node out(YAML::NodeType::Map);
-  out["mpc"] = toYaml(config.mpc);
-  out["controller"] = toYaml(config.controller);
-  return out;
-}
-
 /// Algorithm 1 for one image after the other, in the same way as InProcessDriver and mpc_node.
 class Controller {
  public:
   Controller(std::shared_ptr<Ddm> model, const py::iterable& layers, const py::dict& options)
       : model_(std::move(model)) {
-    YAML::Node blocks = mergedBlocks(layers, options, toYaml(ControlConfig()));
+    YAML::Node own(YAML::NodeType::Map);
+    own["mpc"] = toYaml(MpcOptions());
+    own["controller"] = toYaml(ControllerOptions());
+    YAML::Node blocks = mergedBlocks(layers, options, own);
     if (takeOverLimits("mpc", &blocks) == "the default" && model_) {
       blocks["mpc"]["max_torque"] = valueToYaml(model_->options().max_torque);
     }

@@ -9,7 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <utility>
+#include <vector>
 
 namespace ddm {
 namespace {
@@ -18,89 +18,77 @@ namespace {
 struct Setting {
   std::shared_ptr<const PlantPlugin> plant;
   CameraOptions camera;
-  YAML::Node blocks;  ///< all blocks of the plant's file, completed
 };
 
 Setting read(const YAML::Node& blocks) {
   ParamReader reader(blocks);
-  Setting setting;
-  setting.plant = readPlant(&reader);
-  setting.camera = reader.read<CameraOptions>("camera");
+  const Setting setting{readPlant(&reader), reader.read<CameraOptions>("camera")};
   reader.requireValid();
-  setting.blocks = YAML::Clone(blocks);
-  setting.blocks["plant"] = setting.plant->block();
-  setting.blocks["camera"] = toYaml(setting.camera);
   return setting;
 }
 
-/// Reads the file of the plant, then the options of the caller, which need the keys of the plant.
-Setting settingOf(const std::string& plant, const py::dict& options) {
-  const YAML::Node file = readBlocks(plantFile(plant));
-  const YAML::Node all = read(file).blocks;
-  YAML::Node own(YAML::NodeType::Map);
-  own["plant"] = all["plant"];
-  own["camera"] = all["camera"];
-  YAML::Node blocks = YAML::Clone(file);
-  overlay(mergedBlocks(py::tuple(), options, own), &blocks);
-  return read(blocks);
+/// Sets the blocks `plant` and `camera` to the effective values of all keys.
+void complete(const Setting& setting, YAML::Node* blocks) {
+  (*blocks)["plant"] = setting.plant->block();
+  (*blocks)["camera"] = toYaml(setting.camera);
 }
 
 py::array_t<std::uint8_t> arrayOf(const Picture& picture) {
-  const Eigen::Index height = picture.height;
-  const Eigen::Index width = picture.width;
-  if (picture.channels == 1)
-    return py::array_t<std::uint8_t>({height, width}, picture.bytes.data());
-  const Eigen::Index channels = picture.channels;
-  return py::array_t<std::uint8_t>({height, width, channels}, picture.bytes.data());
+  std::vector<Eigen::Index> shape = {picture.height, picture.width};
+  if (picture.channels > 1) shape.push_back(picture.channels);
+  return copyOf(picture.bytes.data(), shape);
 }
 
 class PythonEnvironment {
  public:
-  PythonEnvironment(const std::string& plant, const py::dict& options)
-      : setting_(settingOf(plant, options)),
-        environment_(makePlant(*setting_.plant), setting_.camera) {
-    const PlantInfo& info = environment_.plant().info();
-    const YAML::Node& blocks = setting_.blocks;
-    if (hasKey(blocks, "trial", "num_steps") &&
-        (!parseValue(blocks["trial"]["num_steps"], &trial_steps_) || trial_steps_ < 1)) {
+  PythonEnvironment(const std::string& plant, const py::dict& options) {
+    const std::string file = plantFile(plant);
+    YAML::Node own(YAML::NodeType::Map);
+    complete(read(readBlocks(file)), &own);  // the keys depend on the type of the plant
+    blocks_ = mergedBlocks(py::make_tuple(file), options, own);
+    const Setting setting = read(blocks_);
+    complete(setting, &blocks_);
+    if (hasKey(blocks_, "trial", "num_steps") &&
+        (!parseValue(blocks_["trial"]["num_steps"], &trial_steps_) || trial_steps_ < 1)) {
       throw py::value_error("trial/num_steps must be an integer >= 1, got " +
-                            YAML::Dump(blocks["trial"]["num_steps"]));
+                            YAML::Dump(blocks_["trial"]["num_steps"]));
     }
-    setting_.blocks["controller"]["torque_dim"] = valueToYaml(info.torqueDim());
-    setting_.blocks["controller"]["dt"] = valueToYaml(info.dt);
+    environment_ = std::make_unique<Environment>(makePlant(*setting.plant), setting.camera);
+    blocks_["controller"]["torque_dim"] = valueToYaml(plantInfo().torqueDim());
+    blocks_["controller"]["dt"] = valueToYaml(plantInfo().dt);
     reset(py::int_(0), py::int_(0), false, py::none());
   }
 
   py::tuple reset(const py::object& seed, const py::object& trial, bool evaluation,
                   const py::object& start) {
     std::optional<Eigen::VectorXd> state;
-    if (!start.is_none()) state = vectorOf(start, "start", environment_.plant().stateDim());
+    if (!start.is_none()) state = vectorOf(start, "start", environment_->plant().stateDim());
     const Picture image =
-        environment_.reset(wholeOf<std::uint64_t>(seed, "seed"),
-                           wholeOf<std::uint32_t>(trial, "trial"), evaluation, state);
+        environment_->reset(wholeOf<std::uint64_t>(seed, "seed"),
+                            wholeOf<std::uint32_t>(trial, "trial"), evaluation, state);
     evaluation_ = evaluation;
-    goal_ = arrayOf(environment_.goalImage());
+    goal_ = arrayOf(environment_->goalImage());
     goal_.attr("setflags")(false);  // all dictionaries `info` share it
-    return py::make_tuple(arrayOf(image), info());
+    const Plant& plant = environment_->plant();
+    return py::make_tuple(arrayOf(image), info(plant.goalError(plant.state())));
   }
 
   py::tuple step(const py::object& torque) {
-    const Plant& plant = environment_.plant();
+    const Plant& plant = environment_->plant();
     const Eigen::VectorXd u = vectorOf(torque, "torque", plant.torqueDim());
     const Eigen::VectorXd before = plant.state();
-    const std::uint64_t begin = environment_.numSteps();
-    const Picture image = environment_.stepUntilSeen(u);
-    const auto num_steps = static_cast<int>(environment_.numSteps() - begin);
-    const py::dict info = this->info();
-    const std::optional<double> reward = plant.stepReward(before, u, num_steps);
-    const bool at_goal = PyObject_IsTrue(py::object(info["at_goal"]).ptr()) == 1;
-    const auto limit = static_cast<std::uint64_t>(maxSteps());
-    return py::make_tuple(arrayOf(image), reward ? *reward : (at_goal ? 1.0 : 0.0), false,
-                          environment_.numSteps() >= limit, info);
+    const std::uint64_t begin = environment_->numSteps();
+    const Picture image = environment_->stepUntilSeen(u);
+    const auto num_steps = static_cast<int>(environment_->numSteps() - begin);
+    const double error = plant.goalError(plant.state());
+    const double at_goal = error <= plantInfo().tolerance ? 1.0 : 0.0;
+    const double reward = plant.stepReward(before, u, num_steps).value_or(at_goal);
+    const bool truncated = environment_->numSteps() >= static_cast<std::uint64_t>(maxSteps());
+    return py::make_tuple(arrayOf(image), reward, false, truncated, info(error));
   }
 
   py::array_t<std::uint8_t> render() const {
-    const Plant& plant = environment_.plant();
+    const Plant& plant = environment_->plant();
     return arrayOf(plant.viewModel() ? plant.view(plant.state()) : plant.render(plant.state()));
   }
 
@@ -110,29 +98,29 @@ class PythonEnvironment {
     return evaluation_ && of_plant > 0 ? of_plant : trial_steps_;
   }
 
-  const PlantInfo& plantInfo() const { return environment_.plant().info(); }
-  py::object configuration() const { return dictOf(setting_.blocks); }
+  const PlantInfo& plantInfo() const { return environment_->plant().info(); }
+  py::object configuration() const { return dictOf(blocks_); }
   py::tuple imageShape() const { return goal_.attr("shape"); }
 
  private:
-  py::dict info() const {
-    const Plant& plant = environment_.plant();
-    const double error = plant.goalError(plant.state());
+  py::dict info(double error) const {
     py::dict out;
-    out["state"] = ddm::arrayOf(plant.state());
-    out["error"] = error;
-    out["at_goal"] = error <= plant.info().tolerance;
-    out["time"] = environment_.time();
-    out["applied_torque"] = ddm::arrayOf(environment_.applied());
-    out["goal_image"] = goal_;
+    out[state_key_] = ddm::arrayOf(environment_->plant().state());
+    out[error_key_] = error;
+    out[at_goal_key_] = error <= plantInfo().tolerance;
+    out[time_key_] = environment_->time();
+    out[goal_key_] = goal_;
     return out;
   }
 
-  Setting setting_;
-  Environment environment_;
+  YAML::Node blocks_;  // of the plant's file and of the options, completed
+  std::unique_ptr<Environment> environment_;
   int trial_steps_ = 100;  // trial/num_steps, and its default
   bool evaluation_ = false;
   py::object goal_;
+  // Made once, because step() is called often.
+  const py::str state_key_{"state"}, error_key_{"error"}, at_goal_key_{"at_goal"};
+  const py::str time_key_{"time"}, goal_key_{"goal_image"};
 };
 
 }  // namespace

@@ -90,7 +90,7 @@ class Environment(gymnasium.Env if gymnasium else object):
           reward: that of the plant, summed over physics steps; 1 at the goal and else 0 for plants without a reward.
           terminated: always false. truncated: true from step max_steps on.
           info: state (the true state), error (distance to the goal) and at_goal (the error is within the tolerance),
-            which no learner may use; goal_image; time since the reset [s]; applied_torque.
+            which no learner may use; goal_image; time since the reset [s].
         Raises TypeError or ValueError; the environment is then unchanged.
         """
         return self._core.step(torque)

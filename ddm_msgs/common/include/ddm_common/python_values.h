@@ -11,6 +11,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -32,53 +33,59 @@ inline std::string describe(const py::handle& value) {
   return py::str(array.dtype()).cast<std::string>() + " [" + sizes + "]";
 }
 
-/// Converts an argument to an array of `Number`.
+/// "torque must be an array [2] of finite numbers"
+inline std::string ruleOf(const std::string& name, const std::string& shape, const char* elements) {
+  return name + " must be an array " + shape + " of " + elements;
+}
+
+/// Converts an argument to an array of `Number`, without a copy if it is one.
 /// @param kinds  accepted kinds of numpy.dtype
 /// @throws py::type_error naming the argument if its elements have another type
 template <class Number>
 py::array_t<Number, py::array::c_style> arrayOf(const py::handle& value, const std::string& name,
-                                                const char* kinds, const char* rule) {
+                                                const std::string& shape, const char* elements,
+                                                const char* kinds) {
+  using Array = py::array_t<Number, py::array::c_style>;
+  if (py::isinstance<Array>(value)) return py::reinterpret_borrow<Array>(value);
   const py::array any = py::array::ensure(value);
   const bool accepted =
       any && std::string(kinds).find(any.dtype().kind()) != std::string::npos &&
       (any.dtype().kind() == 'f' || static_cast<std::size_t>(any.itemsize()) <= sizeof(Number));
   if (!accepted) {
-    throw py::type_error(name + " must be " + rule + ", got " + describe(any ? any : value));
+    throw py::type_error(ruleOf(name, shape, elements) + ", got " + describe(any ? any : value));
   }
   return py::array_t<Number, py::array::c_style | py::array::forcecast>(any);
 }
 
-/// Converts an argument to a matrix of finite numbers.
-/// @param cols  number of columns; -1: any number, but at least one
-/// @return      [rows x cols]
+/// Converts an argument to finite numbers.
+/// @param shape  "[T x 2]": samples, one per row, each with `dim` numbers; "[2]": one sample
+/// @param dim    numbers of a sample; -1: any number, but at least one
+/// @return       one sample per column  [dim x T]
 /// @throws py::type_error or py::value_error naming argument, value and rule
-inline Eigen::MatrixXd matrixOf(const py::handle& value, const std::string& name,
-                                Eigen::Index cols = -1) {
-  const std::string rule = "an array of finite numbers [T x " +
-                           (cols < 0 ? std::string("motors") : std::to_string(cols)) + "]";
-  const auto array = arrayOf<double>(value, name, "fiu", rule.c_str());
-  const bool fits = array.ndim() == 2 && array.shape(1) > 0 && (cols < 0 || array.shape(1) == cols);
-  if (!fits) throw py::value_error(name + " must be " + rule + ", got " + describe(array));
-  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  Eigen::MatrixXd matrix = Eigen::Map<const RowMajor>(array.data(), array.shape(0), array.shape(1));
-  if (!matrix.allFinite())
-    throw py::value_error(name + " must be finite: NaN or infinity is in it");
-  return matrix;
+inline Eigen::MatrixXd numbersOf(const py::handle& value, const std::string& name,
+                                 const std::string& shape, Eigen::Index dim) {
+  constexpr char kElements[] = "finite numbers";
+  const auto array = arrayOf<double>(value, name, shape, kElements, "fiu");
+  const Eigen::Index num_dims = shape.find('x') == std::string::npos ? 1 : 2;
+  const Eigen::Index last = array.ndim() == num_dims ? array.shape(num_dims - 1) : 0;
+  if (last == 0 || (dim >= 0 && last != dim)) {
+    throw py::value_error(ruleOf(name, shape, kElements) + ", got " + describe(array));
+  }
+  const Eigen::MatrixXd numbers =
+      Eigen::Map<const Eigen::MatrixXd>(array.data(), last, array.size() / last);
+  if (numbers.allFinite()) return numbers;
+  throw py::value_error(ruleOf(name, shape, kElements) + ", got NaN or infinity");
 }
 
-/// Converts an argument to a vector of finite numbers.
-/// @throws py::type_error or py::value_error naming argument, value and rule
+/// Converts an array with one sample per row.  [T x dim]
+inline Eigen::MatrixXd samplesOf(const py::handle& value, const std::string& name,
+                                 Eigen::Index dim = -1) {
+  return numbersOf(value, name, "[T x " + (dim < 0 ? "motors" : std::to_string(dim)) + "]", dim);
+}
+
 inline Eigen::VectorXd vectorOf(const py::handle& value, const std::string& name,
-                                Eigen::Index size) {
-  const std::string rule = "an array of " + std::to_string(size) + " finite number(s)";
-  const auto array = arrayOf<double>(value, name, "fiu", rule.c_str());
-  if (array.ndim() != 1 || array.shape(0) != size) {
-    throw py::value_error(name + " must be " + rule + ", got " + describe(array));
-  }
-  Eigen::VectorXd vector = Eigen::Map<const Eigen::VectorXd>(array.data(), size);
-  if (!vector.allFinite())
-    throw py::value_error(name + " must be finite: NaN or infinity is in it");
-  return vector;
+                                Eigen::Index dim) {
+  return numbersOf(value, name, "[" + std::to_string(dim) + "]", dim);
 }
 
 /// Converts an argument to a number of an episode or a seed.
@@ -119,15 +126,21 @@ inline std::string pathOf(const py::handle& value) {
   throw py::type_error("path must be a text or a pathlib.Path, got " + describe(value));
 }
 
-/// Samples of Eigen, one per column, as an array with one sample per row.
-inline py::array_t<double> rowsOf(const Eigen::MatrixXd& columns) {
-  py::array_t<double> rows({columns.cols(), columns.rows()});
-  Eigen::Map<Eigen::MatrixXd>(rows.mutable_data(), columns.rows(), columns.cols()) = columns;
-  return rows;
+/// An array of `shape` with a copy of the values, twice as fast as the copy of pybind11.
+template <class Number, class Shape>
+py::array_t<Number> copyOf(const Number* values, const Shape& shape) {
+  py::array_t<Number> array(shape);
+  std::copy(values, values + array.size(), array.mutable_data());
+  return array;
 }
 
 inline py::array_t<double> arrayOf(const Eigen::VectorXd& vector) {
-  return py::array_t<double>(vector.size(), vector.data());
+  return copyOf(vector.data(), vector.size());
+}
+
+/// Samples of Eigen, one per column, as an array with one sample per row.
+inline py::array_t<double> rowsOf(const Eigen::MatrixXd& columns) {
+  return copyOf(columns.data(), std::vector<Eigen::Index>{columns.cols(), columns.rows()});
 }
 
 /// Images of one size. Keeps the array of Python and copies an image only when it is used.
@@ -169,11 +182,11 @@ class Images {
  private:
   Images(const py::handle& value, const std::string& name, int first) : first_(first) {
     const std::string begin = first > 0 ? "[T x " : "[";
-    const std::string rule = "uint8 " + begin + "H x W] or " + begin + "H x W x 3]";
-    array_ = arrayOf<std::uint8_t>(value, name, "u", rule.c_str());
+    const std::string shape = begin + "H x W] or " + begin + "H x W x 3]";
+    array_ = arrayOf<std::uint8_t>(value, name, shape, "uint8", "u");
     const bool colour = array_.ndim() == first + 3 && array_.shape(first + 2) == 3;
     if (!(colour || array_.ndim() == first + 2) || array_.size() == 0) {
-      throw py::value_error(name + " must be " + rule + " and not empty, got " + describe(array_));
+      throw py::value_error(ruleOf(name, shape, "uint8") + ", not empty, got " + describe(array_));
     }
     height_ = array_.shape(first);
     width_ = array_.shape(first + 1);
