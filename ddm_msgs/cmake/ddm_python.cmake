@@ -1,8 +1,10 @@
 # Python bindings of the packages, which use pybind11.
 option(DDM_PYTHON "Build the Python bindings if pybind11 is installed" ON)
 
-set(DDM_BINDINGS OFF)  # whether this package gets bindings
-if(DDM_PYTHON AND NOT DDM_SANITIZE)  # a Python interpreter cannot load libraries of a sanitizer build
+# Whether this package gets bindings. A Python interpreter cannot load libraries of a sanitizer build.
+set(DDM_BINDINGS OFF)
+if(DDM_PYTHON AND NOT DDM_SANITIZE AND EXISTS ${PROJECT_SOURCE_DIR}/python/core.cpp)
+  set(PYBIND11_PYTHON_VERSION ${PYTHON_VERSION})  # the version that catkin uses
   find_package(pybind11 2.4 QUIET)
   if(pybind11_FOUND)
     set(DDM_BINDINGS ON)
@@ -12,7 +14,8 @@ if(DDM_PYTHON AND NOT DDM_SANITIZE)  # a Python interpreter cannot load librarie
 endif()
 
 # Adds the Python module PACKAGE._core from python/core.cpp, and installs the type hints of the package. In devel and in
-# install space, the module is in the folder of the Python package. The arguments are the libraries of the module.
+# install space, the module is in the folder of the Python package. The arguments after the file of the hints are the
+# libraries of the module.
 function(ddm_add_python_module hints)
   if(NOT DDM_BINDINGS)
     return()
