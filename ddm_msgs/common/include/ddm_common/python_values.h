@@ -23,8 +23,9 @@ namespace py = pybind11;
 
 /// Describes an argument for an error message: "float64 [3 x 2]" for an array, else its type.
 inline std::string describe(const py::handle& value) {
-  if (!py::isinstance<py::array>(value))
+  if (!py::isinstance<py::array>(value)) {
     return value.get_type().attr("__name__").cast<std::string>();
+  }
   const auto array = py::reinterpret_borrow<py::array>(value);
   std::string sizes;
   for (Eigen::Index i = 0; i < array.ndim(); ++i) {
@@ -256,7 +257,7 @@ inline YAML::Node mergedBlocks(const py::iterable& layers, const py::dict& optio
     if (py::isinstance<py::dict>(option.second)) given[name] = yamlOf(option.second, name, 1);
     for (const auto& block : own) {
       for (const auto& key : block.second) known.push_back(key.first.Scalar());
-      if (given.size() > 0 || known.empty() || !hasKey(own, block.first.Scalar(), name)) continue;
+      if (given.size() > 0 || !hasKey(own, block.first.Scalar(), name)) continue;
       given[block.first.Scalar()][name] = yamlOf(option.second, name, 2);
     }
     if (given.size() == 0) {
