@@ -178,8 +178,9 @@ fuzz_target() {  # FOLDER_OF_SEEDS
   longest=$(stat -c %s "$1"/* | sort -n | tail -n 1)
   mkdir -p "$out/corpus/$target"
   FUZZ_TARGET=$target ASAN_OPTIONS=$leaks LD_LIBRARY_PATH=$programs:$LD_LIBRARY_PATH \
-    "$programs/$package/${package}_fuzz" -runs="$runs" -seed="$seed" -max_len=$((longest < 64 ? 256 : 4 * longest)) -malloc_limit_mb=64 -rss_limit_mb=2048 -timeout=30 \
-    -artifact_prefix="$out/findings/$target-" "$out/corpus/$target" "$1" >"$out/logs/$target.txt" 2>&1 || found=1
+    "$programs/$package/${package}_fuzz" -runs="$runs" -seed="$seed" -max_len=$((longest < 64 ? 256 : 4 * longest)) \
+    -malloc_limit_mb=64 -rss_limit_mb=2048 -timeout=30 -artifact_prefix="$out/findings/$target-" \
+    "$out/corpus/$target" "$1" >"$out/logs/$target.txt" 2>&1 || found=1
   ((found == 0)) || { tail -n 40 "$out/logs/$target.txt" && echo "FOUND by $target: see $out/findings and $out/logs/$target.txt"; }
   echo "$target,$((found ? 0 : runs)),$((SECONDS - start)),$(find "$out/corpus/$target" -type f | wc -l),$found" >>"$out/fuzzing.csv"
   return "$found"

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <ddm_common/tool.h>
+#include <ddm_common/yaml_text.h>
 #include <yaml-cpp/yaml.h>
 
 #include <string>
@@ -16,8 +17,9 @@ inline void addBagOptions(boost::program_options::options_description* options, 
   const auto add = [&](const char* option, const std::string& key, const char* form,
                        const char* text) {
     const bool is_list = key == "motors" || key == "crop";
-    const auto set = [given, key, is_list](const std::string& value) {
-      (*given)["data_set"][key] = YAML::Load(is_list ? "[" + value + "]" : value);
+    const auto set = [given, key, is_list, name = std::string(option)](const std::string& value) {
+      (*given)["data_set"][key] =
+          parseYaml(is_list ? "[" + value + "]" : value, "option --" + name);
     };
     options->add_options()(
         option, boost::program_options::value<std::string>()->value_name(form)->notifier(set),

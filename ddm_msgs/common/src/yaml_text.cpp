@@ -17,6 +17,7 @@ namespace {
 namespace utf = boost::locale::utf;
 
 constexpr std::size_t kMaxLevels = 20;
+constexpr char kEndOfFile = 4;  // yaml-cpp adds it to a text, which may also contain it
 
 [[noreturn]] void refuse(const std::string& source, const YAML::Mark& mark,
                          const std::string& what) {
@@ -32,6 +33,36 @@ bool isText(const std::string& text) {
     if (!utf::is_valid_codepoint(code) || no_character) return false;
   }
   return true;
+}
+
+/// Refuses a ':' directly before ']' outside of quotes, because yaml-cpp 0.6 (Debian 11, Noetic)
+/// never returns from it. The same holds for a ':' before the end of the file.
+void refuseOpenEnd(const std::string& text, const std::string& source) {
+  YAML::Mark mark;
+  char quote = '\0';     // the quote that ends the current text; 0: outside of quotes
+  bool begins = true;    // whether a text in quotes or a comment can begin here
+  bool comment = false;  // until the end of the line
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '\n') {
+      ++mark.line;
+      comment = false;
+    }
+    if (comment) continue;
+    if (quote != '\0') {
+      if (c == quote) quote = '\0';
+      if (c == '\\' && quote == '"') ++i;
+      begins = false;
+      continue;
+    }
+    const char next = text[std::min(i + 1, text.size() - 1)];
+    if (c == ':' && (next == ']' || next == kEndOfFile)) {
+      refuse(source, mark, "a ':' must not stand directly before ']': add a value or a blank");
+    }
+    comment = begins && c == '#';
+    if (begins && (c == '"' || c == '\'')) quote = c;
+    begins = std::string(" \t\r\n[{,:").find(c) != std::string::npos;
+  }
 }
 
 /// Event handler that stops the recursive parser before the document becomes too deep.
@@ -81,13 +112,15 @@ class Inspection : public YAML::EventHandler {
 }  // namespace
 
 YAML::Node parseYaml(const std::string& text, const std::string& source) {
+  const std::string lines = text + "\n";  // so that no ':' is at the end
+  refuseOpenEnd(lines, source);
   try {
-    std::istringstream in(text);
+    std::istringstream in(lines);
     YAML::Parser parser(in);
     Inspection inspection(source);
     while (parser.HandleNextDocument(inspection)) {
     }
-    return YAML::Load(text);
+    return YAML::Load(lines);
   } catch (const YAML::Exception& e) {
     refuse(source, e.mark, "not valid YAML: " + e.msg);
   }

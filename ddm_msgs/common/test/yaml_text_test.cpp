@@ -41,6 +41,22 @@ TEST(YamlText, MoreThanTwentyLevelsAreRefused) {
   }
 }
 
+TEST(YamlText, AColonBeforeTheEndOfAListIsRefusedOutsideOfQuotes) {
+  for (const std::string text : {"[a :]", "{b: it's, c: [x, a:]}", "[\"#\", 'b', a:]", "[:]"}) {
+    EXPECT_TRUE(testing::names(refusalOf("# a:]\n" + text), {"FILE:2: ", "':'", "']'"})) << text;
+  }
+  for (const std::string text : {"['a:]']", "[\"a\\\":]\"]", "[a: ]", "[a:b, 1]", "[{a:}]"}) {
+    EXPECT_EQ(refusalOf(text), "accepted") << text;
+  }
+}
+
+TEST(YamlText, AListThatEndsWithAColonIsRefused) {
+  for (const std::string text : {"{a:", "[a:", "[\"a\" :", "[a:\4]", "{a: [b:"}) {
+    EXPECT_TRUE(testing::names(refusalOf(text), {"FILE:"})) << text;
+  }
+  EXPECT_TRUE(parseYaml("a:", "FILE")["a"].IsNull());
+}
+
 TEST(YamlText, WhatContainsItselfIsRefused) {
   EXPECT_TRUE(testing::names(refusalOf("a:\n  &x [1, *x]\n"), {"FILE:2: ", "itself"}));
   EXPECT_TRUE(testing::names(refusalOf("a: &x {b: [*x]}\n"), {"FILE:1: ", "itself"}));
