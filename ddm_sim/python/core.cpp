@@ -14,7 +14,7 @@
 namespace ddm {
 namespace {
 
-/// What an environment is made from.
+/// Plant and camera of an environment.
 struct Setting {
   std::shared_ptr<const PlantPlugin> plant;
   CameraOptions camera;
@@ -118,7 +118,7 @@ class PythonEnvironment {
   int trial_steps_ = 100;  // trial/num_steps, and its default
   bool evaluation_ = false;
   py::object goal_;
-  // Made once, because step() is called often.
+  // The keys of `info` are made once, because step() is called often.
   const py::str state_key_{"state"}, error_key_{"error"}, at_goal_key_{"at_goal"};
   const py::str time_key_{"time"}, goal_key_{"goal_image"};
 };

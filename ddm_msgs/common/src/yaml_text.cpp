@@ -17,7 +17,6 @@ namespace {
 namespace utf = boost::locale::utf;
 
 constexpr std::size_t kMaxLevels = 20;
-constexpr char kEndOfFile = 4;  // yaml-cpp adds it to a text, which may also contain it
 
 [[noreturn]] void refuse(const std::string& source, const YAML::Mark& mark,
                          const std::string& what) {
@@ -35,34 +34,15 @@ bool isText(const std::string& text) {
   return true;
 }
 
-/// Refuses a ':' directly before ']' outside of quotes, because yaml-cpp 0.6 (Debian 11, Noetic)
-/// never returns from it. The same holds for a ':' before the end of the file.
-void refuseOpenEnd(const std::string& text, const std::string& source) {
+/// Refuses a ':' directly before ']' or the character 4, which yaml-cpp uses as its end of file.
+/// yaml-cpp 0.6 (Debian 11, Noetic) never returns from either. Quotes and comments are no
+/// exception, because only the parser of YAML knows where they begin.
+void refuseColonBeforeEnd(const std::string& text, const std::string& source) {
+  const std::size_t at = std::min(text.find(":]"), text.find(":\4"));
+  if (at == std::string::npos) return;
   YAML::Mark mark;
-  char quote = '\0';     // the quote that ends the current text; 0: outside of quotes
-  bool begins = true;    // whether a text in quotes or a comment can begin here
-  bool comment = false;  // until the end of the line
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (c == '\n') {
-      ++mark.line;
-      comment = false;
-    }
-    if (comment) continue;
-    if (quote != '\0') {
-      if (c == quote) quote = '\0';
-      if (c == '\\' && quote == '"') ++i;
-      begins = false;
-      continue;
-    }
-    const char next = text[std::min(i + 1, text.size() - 1)];
-    if (c == ':' && (next == ']' || next == kEndOfFile)) {
-      refuse(source, mark, "a ':' must not stand directly before ']': add a value or a blank");
-    }
-    comment = begins && c == '#';
-    if (begins && (c == '"' || c == '\'')) quote = c;
-    begins = std::string(" \t\r\n[{,:").find(c) != std::string::npos;
-  }
+  mark.line = static_cast<int>(std::count(text.begin(), text.begin() + at, '\n'));
+  refuse(source, mark, "a ':' must not stand directly before ']': add a value or a blank");
 }
 
 /// Event handler that stops the recursive parser before the document becomes too deep.
@@ -113,7 +93,7 @@ class Inspection : public YAML::EventHandler {
 
 YAML::Node parseYaml(const std::string& text, const std::string& source) {
   const std::string lines = text + "\n";  // so that no ':' is at the end
-  refuseOpenEnd(lines, source);
+  refuseColonBeforeEnd(lines, source);
   try {
     std::istringstream in(lines);
     YAML::Parser parser(in);

@@ -41,11 +41,12 @@ TEST(YamlText, MoreThanTwentyLevelsAreRefused) {
   }
 }
 
-TEST(YamlText, AColonBeforeTheEndOfAListIsRefusedOutsideOfQuotes) {
-  for (const std::string text : {"[a :]", "{b: it's, c: [x, a:]}", "[\"#\", 'b', a:]", "[:]"}) {
-    EXPECT_TRUE(testing::names(refusalOf("# a:]\n" + text), {"FILE:2: ", "':'", "']'"})) << text;
+TEST(YamlText, AColonBeforeTheEndOfAListIsRefused) {
+  for (const std::string text :
+       {"[a :]", "{b: x 'y, c: [x, a:]}", "[a:#b:]", "{a:\"b:]\"}", "[:]"}) {
+    EXPECT_TRUE(testing::names(refusalOf("# a\n" + text), {"FILE:2: ", "':'", "']'"})) << text;
   }
-  for (const std::string text : {"['a:]']", "[\"a\\\":]\"]", "[a: ]", "[a:b, 1]", "[{a:}]"}) {
+  for (const std::string text : {"[a: ]", "[a:b, 1]", "[{a:}]", "[\"a:\"]"}) {
     EXPECT_EQ(refusalOf(text), "accepted") << text;
   }
 }

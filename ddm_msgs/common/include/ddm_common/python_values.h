@@ -241,7 +241,7 @@ inline py::object dictOf(const YAML::Node& blocks) {
 /// @param layers   paths of YAML files, or dictionaries of blocks
 /// @param options  whole blocks, such as mpc={"horizon": 4}, or keys of `own`, such as horizon=4
 /// @param own      blocks of the function with all of their keys
-/// @throws py::type_error if there is no such option
+/// @throws py::type_error naming the option if neither `own` nor `options` has a block for it
 inline YAML::Node mergedBlocks(const py::iterable& layers, const py::dict& options,
                                const YAML::Node& own) {
   YAML::Node merged(YAML::NodeType::Map);

@@ -24,7 +24,7 @@ std::shared_ptr<const PlantPlugin> readPlant(ParamReader* reader);
 std::shared_ptr<const PlantPlugin> readPlantFiles(std::vector<std::string> files);
 
 /// Names of the plants that the folder config/ of a package describes, sorted.
-/// @throws std::invalid_argument if there is no such package
+/// @throws std::invalid_argument if the package cannot be found
 std::vector<std::string> plantsOf(const std::string& package);
 
 /// Whether the name of a plant is the path of its file, and not a name within a package.
