@@ -157,10 +157,12 @@ class Robot:
         """Ends the episode and restores everything that a test has changed."""
         self.stopAnswering()
         self.camera.restore()
-        num_cancels = len(self.cancels.messages)
-        if self.enabled.messages[-1].data:
-            self.enable(False)
-            wait_until(lambda: len(self.cancels.messages) > num_cancels, "the cancelled trial")
+        self.enable(False)
+        # Motors that are switched off announce it, and cancel the trial. Both messages may still be on their way.
+        wait_until(lambda: not self.enabled.messages[-1].data, "the end of the permission")
+        enabled = [message.data for message in self.enabled.messages]
+        num_ends = sum(before and not after for before, after in zip(enabled, enabled[1:]))
+        wait_until(lambda: len(self.cancels.times) >= num_ends, "the cancelled trial")
         del self.cancels.messages[:]
         self.images.next()
 
@@ -266,6 +268,7 @@ class SharedRobotCase(unittest.TestCase):
         wait_until(lambda: self.robot.enable(True).success, "permission")
         self.robot.answerAll(torque)  # on a busy machine the first torque may be late
         self.robot.waitForEffort(torque)
+        del self.robot.cancels.messages[:]  # on a busy machine the trial may have begun more than once
         self.robot.stopAnswering()
 
     def assertCancelled(self):

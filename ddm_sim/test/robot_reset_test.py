@@ -153,7 +153,7 @@ class RobotResetTest(RobotCase):
     def test_the_goal_is_kept_in_its_file_and_one_that_cannot_be_used_is_refused(self):
         first = self.start("_robot/goal_file:=" + self.goal)
         wait_until(lambda: first.takeGoal().success, "a camera")
-        first.process.stop()
+        first.end()
         second = self.start("_robot/goal_file:=" + self.goal)
         wait_until(lambda: second.goals.messages, "the goal")
         self.assertEqual(list(bytearray(second.goals.messages[0].data)), 4 * [255, 255, 0, 0])
