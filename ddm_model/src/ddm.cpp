@@ -56,13 +56,22 @@ std::vector<Eigen::Index> predictionStarts(const Ddm& model, const DataSet& data
   return starts;
 }
 
+/// @return number of centres of the Gaussian process in f with so many parameters of the model; 0:
+///         f contains a network
+Eigen::Index numCentres(const ModelOptions& options, int torque_dim, Eigen::Index num_params) {
+  if (options.predictor != "gp") return 0;
+  const Networks<double> one(options, torque_dim, /*num_centres=*/1), two(options, torque_dim, 2);
+  return 1 + std::max<Eigen::Index>(num_params - one.numParams(), 0) /
+                 (two.numParams() - one.numParams());
+}
+
 }  // namespace
 
 Ddm::Ddm(ModelOptions options, int image_size, int torque_dim, Pca pca, Eigen::VectorXd theta,
          Grey goal, ModelInfo info)
     : options_(std::move(options)),
       image_size_(image_size),
-      networks_(options_, torque_dim),
+      networks_(options_, torque_dim, numCentres(options_, torque_dim, theta.size())),
       pca_(std::move(pca)),
       theta_(std::move(theta)),
       goal_(std::move(goal)),

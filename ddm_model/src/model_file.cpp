@@ -16,7 +16,7 @@ namespace {
 
 constexpr char kMagic[] = "DDMMODEL";
 constexpr size_t kMagicSize = sizeof(kMagic) - 1;
-constexpr std::uint32_t kVersion = 5;
+constexpr std::uint32_t kVersion = 6;
 constexpr size_t kHeaderSize = kMagicSize + 4 + 8 + 4;
 
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "model files are little-endian");
@@ -103,6 +103,7 @@ struct Content {
     each(options.pca_dim, options.feature_dim, options.order);
     each(options.encoder_widths, decoder_widths, options.predictor_widths);
     each(options.residual, options.increments, options.max_torque, options.blur, options.delay);
+    each(options.predictor);
     each(image_size, torque_dim);
     each(info.seed, info.trial, info.frames, info.v_r, info.v_p, info.feature_spread);
     each(support_states, info.config);

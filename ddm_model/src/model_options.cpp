@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <boost/algorithm/string/join.hpp>
+#include <utility>
 
 #include "ddm_model/per_motor.h"
 #include "ddm_model/schedule.h"
@@ -23,6 +24,15 @@ std::vector<std::string> ModelOptions::problems() const {
   model.requireWithin("order", order, 1, 50);
   model.requireWithin("delay", delay, 0, 50);
   requireWidths("encoder_widths", encoder_widths);
+  model.require(predictor == "network" || predictor == "gp", "predictor", "be network or gp",
+                predictor);
+  for (const auto& [key, value] : {std::pair("residual", residual), {"increments", increments}}) {
+    model.require(predictor != "gp" || value, key, "be true where model/predictor is gp", "false");
+  }
+  model.require(predictor != "gp" || delay == 0, "delay",
+                "be 0 where model/predictor is gp: increase model/order instead, which shows f "
+                "earlier torques",
+                std::to_string(delay));
   requireWidths("predictor_widths", predictor_widths);
   model.require(areLimits(max_torque), "max_torque", "be > 0 and finite", limitsText(max_torque));
   return model.problems();

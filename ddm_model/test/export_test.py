@@ -32,7 +32,8 @@ def make(tmp_path_factory):
 
 
 @pytest.mark.parametrize("model_options", [
-    "", ", blur: 1.5, residual: true, increments: true, order: 3, delay: 1, predictor_widths: [5, 3]"])
+    "", ", blur: 1.5, residual: true, increments: true, order: 3, delay: 1, predictor_widths: [5, 3]",
+    ", residual: true, increments: true, order: 3, predictor: gp"])
 def test_it_encodes_decodes_and_predicts_as_the_model_does(model_options, tmp_path):
     made = Made(tmp_path, model_options)
     model = ddm_model.load(made.model)
@@ -79,7 +80,7 @@ def test_a_damaged_model_is_named(made, tmp_path):
     path = tmp_path / "model.ddm"
     for damage, word in ((data[:-1], "damaged"), (data[:5], "is not a DDM model"), (data[:12], "cut short"),
                          (data[:-9] + b"x" + data[-8:], "damaged"), (data[:8] + b"\x63" + data[9:], "format version 99"),
-                         (b"DDMMODEL" + struct.pack("<IQI", 5, len(infinite), zlib.crc32(infinite)) + infinite,
+                         (b"DDMMODEL" + struct.pack("<IQI", ddm_model.model.VERSION, len(infinite), zlib.crc32(infinite)) + infinite,
                           "pca_mean must be finite")):
         path.write_bytes(damage)
         with pytest.raises(ddm_model.ModelFileError, match="model %s: .*%s" % (re.escape(str(path)), word)):

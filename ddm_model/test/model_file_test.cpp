@@ -80,6 +80,24 @@ TEST(ModelFile, KeepsEveryOptionALimitForEachMotorAndSupportStates) {
   EXPECT_EQ(serialiseModel(back), bytes);
 }
 
+TEST(ModelFile, KeepsAGaussianProcessAndRefusesAPartOfACentre) {
+  const Ddm one = toyModel();
+  ModelOptions options = one.options();
+  options.residual = options.increments = true;
+  options.predictor = "gp";
+  const Eigen::Index num_params = Networks<double>(options, 1, /*num_centres=*/3).numParams();
+  const auto with = [&](Eigen::Index count) {
+    return Ddm(options, one.imageSize(), 1, one.pca(), testing::randomMatrix(count, 1, 4),
+               one.goal(), one.info());
+  };
+  const Ddm model = with(num_params);
+  const Ddm back = deserialiseModel(serialiseModel(model), "memory");
+  const Eigen::MatrixXd Z = testing::randomMatrix(2, 8, 1), U = testing::randomMatrix(1, 8, 2);
+  EXPECT_EQ(back.rollOut(Z, U, 3, 4), model.rollOut(Z, U, 3, 4));
+  EXPECT_THROW(with(num_params - 1), std::invalid_argument);
+  EXPECT_THROW(with(one.theta().size() / 8), std::invalid_argument);
+}
+
 TEST(ModelFile, CutShortAnywhereIsRefused) {
   const std::string bytes = serialiseModel(toyModel());
   for (size_t size = 0; size < bytes.size(); size += 7) {
@@ -101,10 +119,10 @@ TEST(ModelFile, AnyByteThatIsDamagedIsNoticed) {
 
 TEST(ModelFile, AnotherVersionIsRefusedWithBothVersionsAndTheRemedy) {
   std::string bytes = serialiseModel(toyModel());
-  for (const char version : {4, 6}) {
+  for (const char version : {5, 7}) {
     bytes[kVersionAt] = version;
     EXPECT_TRUE(
-        isRefused(bytes, {"version " + std::to_string(version), "reads version 5", "train it"}));
+        isRefused(bytes, {"version " + std::to_string(version), "reads version 6", "train it"}));
   }
 }
 
@@ -126,9 +144,9 @@ TEST(ModelFile, ContentThatMakesNoSenseIsRefusedThoughItsChecksumFits) {
   EXPECT_TRUE(isRefused(withNumber(0, -1), {"no sense", "model/pca_dim"}));
   EXPECT_TRUE(isRefused(withNumber(8, 0), {"no sense", "model/order"}));
   EXPECT_TRUE(isRefused(withNumber(12, 0x7fffffff), {"no sense", "longer"}));
-  EXPECT_EQ(withNumber(78, testing::kToySize), bytes);  // the image size follows the options
-  EXPECT_TRUE(isRefused(withNumber(78, 0), {"no sense", "image size", "[1, 16384]", "got 0"}));
-  EXPECT_TRUE(isRefused(withNumber(82, 1001), {"no sense", "motors", "[1, 1000]", "got 1001"}));
+  EXPECT_EQ(withNumber(93, testing::kToySize), bytes);  // the image size follows the options
+  EXPECT_TRUE(isRefused(withNumber(93, 0), {"no sense", "image size", "[1, 16384]", "got 0"}));
+  EXPECT_TRUE(isRefused(withNumber(97, 1001), {"no sense", "motors", "[1, 1000]", "got 1001"}));
 }
 
 TEST(ModelFile, SupportStatesThatAreNoStatesAreRefused) {

@@ -202,6 +202,21 @@ TEST_F(Trainer, TellsOneProgressOverAllStartsAndStopsThemAll) {
   EXPECT_FALSE(result.model);
 }
 
+TEST_F(Trainer, AGaussianProcessPredictsTheSameFeaturesBetter) {
+  data_.append(testing::toyTrial(200, 3));
+  model_.residual = model_.increments = true;
+  const TrainingResult network = run();
+  model_.predictor = "gp";
+  const TrainingResult gp = run();
+  ASSERT_TRUE(network.model && gp.model) << network.message << gp.message;
+  const DataSet test = testing::toyTrial(40, 7);
+  EXPECT_EQ(gp.model->encode(test.image(3)), network.model->encode(test.image(3)));
+  EXPECT_EQ(gp.model->info().v_p, network.model->info().v_p);
+  EXPECT_LT(predictionErrors(*gp.model, test, 3)[2].rmse,
+            0.9 * predictionErrors(*network.model, test, 3)[2].rmse);
+  EXPECT_EQ(run().model->theta(), gp.model->theta());
+}
+
 TEST_F(Trainer, AnotherSeedOrTrialGivesAnotherModel) {
   const Eigen::VectorXd theta = run().model->theta();
   info_.seed = 5 + (1ULL << 32);  // the high bits count, too

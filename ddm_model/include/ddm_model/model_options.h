@@ -16,9 +16,11 @@ struct ModelOptions {
   int order = 2;        ///< n, past features and torques in the input of f [-]
   int delay = 0;        ///< d, delay of the images [samples]
   std::vector<int> encoder_widths = {25, 12, 6};  ///< hidden layers of g^-1; g mirrors them
-  std::vector<int> predictor_widths = {4};        ///< hidden layers of f
-  bool residual = false;                          ///< f predicts the change of z instead of z
-  bool increments = false;                        ///< past features enter f as differences
+  /// "network"; "gp": after the training, a Gaussian process replaces the network in f.
+  std::string predictor = "network";
+  std::vector<int> predictor_widths = {4};  ///< hidden layers of the network in f
+  bool residual = false;                    ///< f predicts the change of z instead of z
+  bool increments = false;                  ///< past features enter f as differences
   /// Scale of the torques: f sees u / max_torque [N m]. One number for all motors, or one each.
   std::vector<double> max_torque = {6.0};
 
@@ -30,6 +32,7 @@ struct ModelOptions {
     visitor("order", order);
     visitor("delay", delay);
     visitor("encoder_widths", encoder_widths);
+    visitor("predictor", predictor);
     visitor("predictor_widths", predictor_widths);
     visitor("residual", residual);
     visitor("increments", increments);

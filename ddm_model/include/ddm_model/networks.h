@@ -3,8 +3,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <random>
 
+#include "ddm_model/gp_mean.h"
 #include "ddm_model/mlp.h"
 #include "ddm_model/model_options.h"
 #include "ddm_model/per_motor.h"
@@ -23,20 +25,24 @@ namespace ddm {
 ///  * model/increments: the network sees z_t, z_t - z_{t-1}, z_{t-1} - z_{t-2}, ... instead of the
 ///    features, because features of successive images are almost equal and only their differences
 ///    show the motion.
+///  * model/predictor gp: in a trained model, the mean of a Gaussian process replaces the network.
 template <class Scalar>
 class PredictionModel {
  public:
   using Matrix = typename Mlp<Scalar>::Matrix;
 
+  /// @param num_centres  centres of the Gaussian process that f contains; 0: f contains a network
   /// @throws std::invalid_argument if a width is < 1, or if max_torque has a wrong number of
   ///         entries
-  PredictionModel(const ModelOptions& options, int torque_dim)
+  PredictionModel(const ModelOptions& options, int torque_dim, Eigen::Index num_centres = 0)
       : options_(options),
         torque_dim_(torque_dim),
         max_torque_(perMotor(options.max_torque, torque_dim, "model/max_torque")),
         network_(layerWidths(options.order * (options.feature_dim + torque_dim),
                              options.predictor_widths, options.feature_dim),
-                 Mlp<Scalar>::Output::kLinear) {}
+                 Mlp<Scalar>::Output::kLinear) {
+    if (num_centres > 0) gp_.emplace(regressorDim(), featureDim(), num_centres);
+  }
 
   int featureDim() const { return options_.feature_dim; }
   int torqueDim() const { return torque_dim_; }
@@ -53,6 +59,15 @@ class PredictionModel {
 
   /// @return the network within f
   const Mlp<Scalar>& network() const { return network_; }
+  /// @return P_f, the number of parameters
+  Eigen::Index numParams() const { return gp_ ? gp_->numParams() : network_.numParams(); }
+
+  /// Replaces past features in regressors by differences, if model/increments is set.
+  void toIncrements(Eigen::Ref<Matrix> regressors) const {
+    for (int lag = options_.increments ? order() - 1 : 0; lag > 0; --lag) {
+      features(lag, regressors) = features(lag - 1, regressors) - features(lag, regressors);
+    }
+  }
 
   /// @param theta_p     parameters of f                                                      [P_f]
   /// @param regressors  one h_n per column; out: inputs of the network       [regressorDim() x N]
@@ -60,10 +75,12 @@ class PredictionModel {
   /// @param predicted   out: z_{t+1}; must have this size already                [feature_dim x N]
   void forward(const Scalar* theta_p, Eigen::Ref<Matrix> regressors,
                typename Mlp<Scalar>::Tape* tape, Eigen::Ref<Matrix> predicted) const {
-    for (int lag = options_.increments ? order() - 1 : 0; lag > 0; --lag) {
-      features(lag, regressors) = features(lag - 1, regressors) - features(lag, regressors);
+    toIncrements(regressors);
+    if (gp_) {  // eq. (2)
+      gp_->forward(theta_p, regressors, tape);
+    } else {
+      network_.forward(theta_p, regressors, tape);
     }
-    network_.forward(theta_p, regressors, tape);  // eq. (2)
     predicted = tape->output();
     if (options_.residual) predicted += features(0, regressors);
   }
@@ -71,12 +88,16 @@ class PredictionModel {
   /// Vector-Jacobian product of forward(). Consumes the tape.
   /// @param theta_p       parameters of the forward pass                                     [P_f]
   /// @param d_predicted   dV/dz_{t+1}                                            [feature_dim x N]
-  /// @param d_theta_p     dV/d theta_P is ADDED to it; null: skip                            [P_f]
+  /// @param d_theta_p     dV/d theta_P is ADDED to it; null: skip. A Gaussian process has none [P_f]
   /// @param d_regressors  out: dV/dh_n in its first N columns              [regressorDim() x >= N]
   void backward(const Scalar* theta_p, typename Mlp<Scalar>::Tape* tape,
                 const Eigen::Ref<const Matrix>& d_predicted, Scalar* d_theta_p,
                 Matrix* d_regressors) const {
-    network_.backward(theta_p, tape, d_predicted, d_theta_p, d_regressors);
+    if (gp_) {
+      gp_->backward(theta_p, tape, d_predicted, d_regressors);
+    } else {
+      network_.backward(theta_p, tape, d_predicted, d_theta_p, d_regressors);
+    }
     auto d_h = d_regressors->leftCols(d_predicted.cols());
     for (int lag = 1; lag < (options_.increments ? order() : 1); ++lag) {
       features(lag - 1, d_h) += features(lag, d_h);
@@ -96,6 +117,7 @@ class PredictionModel {
   int torque_dim_;
   Eigen::VectorXd max_torque_;
   Mlp<Scalar> network_;
+  std::optional<GpMean<Scalar>> gp_;
 };
 
 /// g^-1, g and f, and their places in the flat vector theta = [theta_E, theta_D, theta_P].
@@ -106,16 +128,19 @@ template <class Scalar>
 struct Networks {
   PredictionModel<Scalar> prediction_model;
 
+  /// @param num_centres  of the Gaussian process in f; 0: f is a network
   /// @throws std::invalid_argument if a width is < 1, or if max_torque has a wrong number of
   ///         entries
-  Networks(const ModelOptions& options, int torque_dim)
-      : prediction_model(options, torque_dim),
+  Networks(const ModelOptions& options, int torque_dim, Eigen::Index num_centres = 0)
+      : prediction_model(options, torque_dim, num_centres),
         encoder_(layerWidths(options.pca_dim, options.encoder_widths, options.feature_dim),
                  Mlp<Scalar>::Output::kArctan),
         decoder_(layerWidths(options.feature_dim, options.decoderWidths(), options.pca_dim),
                  Mlp<Scalar>::Output::kLinear) {}
 
-  Eigen::Index numParams() const { return predictorOffset() + f().numParams(); }
+  Eigen::Index numParams() const { return numOfAutoEncoder() + prediction_model.numParams(); }
+  /// @return number of parameters in theta_E and theta_D
+  Eigen::Index numOfAutoEncoder() const { return encoder().numParams() + decoder().numParams(); }
   const Mlp<Scalar>& encoder() const { return encoder_; }
   const Mlp<Scalar>& decoder() const { return decoder_; }
   const Mlp<Scalar>& f() const { return prediction_model.network(); }
@@ -131,12 +156,10 @@ struct Networks {
   }
   template <class Pointer>
   Pointer predictorOf(Pointer theta) const {
-    return theta + predictorOffset();
+    return theta + numOfAutoEncoder();
   }
 
  private:
-  Eigen::Index predictorOffset() const { return encoder().numParams() + decoder().numParams(); }
-
   Mlp<Scalar> encoder_;  // g^-1: pca_dim ... feature_dim
   Mlp<Scalar> decoder_;  // g:    feature_dim ... pca_dim
 };

@@ -7,7 +7,7 @@ import zlib
 import numpy as np
 
 MAGIC, HEADER = b"DDMMODEL", "<IQI"  # after MAGIC: version, size of the content [bytes], CRC-32
-VERSION = 5  # version of the file format
+VERSION = 6  # version of the file format
 
 
 class ModelFileError(OSError, ValueError):
@@ -64,6 +64,7 @@ def _read_options(reader):
     options["max_torque"] = reader.array("<f8")
     options["blur"] = float(reader.number("<f8"))
     options["delay"] = int(reader.number("<i4"))
+    options["predictor"] = reader.text()
     return options
 
 
@@ -144,15 +145,26 @@ class Model:
                   "pca_variance": reader.array("<f8")}
         arrays["pca_basis"] = arrays["pca_basis"].reshape(options["pca_dim"], -1).T
         theta, n, dim = reader.array("<f8"), options["order"], options["feature_dim"]
-        networks = (("encoder", [options["pca_dim"], *options["encoder_widths"], dim]),
-                    ("decoder", [dim, *options["decoder_widths"], options["pca_dim"]]),
-                    ("f", [n * (dim + self.torque_dim), *options["predictor_widths"], dim]))
+        networks = [("encoder", [options["pca_dim"], *options["encoder_widths"], dim]),
+                    ("decoder", [dim, *options["decoder_widths"], options["pca_dim"]])]
+        num_inputs = n * (dim + self.torque_dim)
+        if options["predictor"] == "network":
+            networks.append(("f", [num_inputs, *options["predictor_widths"], dim]))
         needed = sum((inputs + 1) * outputs for _, widths in networks for inputs, outputs in zip(widths, widths[1:]))
-        if theta.size != needed:
-            raise ModelFileError("has %d parameters, but its networks need %d: train it again" % (theta.size, needed))
+        gp = np.empty(0)
+        if options["predictor"] == "gp":
+            theta, gp = theta[:needed], theta[needed:]
+        sizes = np.cumsum([num_inputs, num_inputs * dim, dim])  # 1 / l, slope and bias
+        num_centres, rest = divmod(gp.size - sizes[-1], num_inputs + dim)
+        if theta.size != needed or (gp.size > 0 and (num_centres < 1 or rest > 0)):
+            raise ModelFileError("has %d parameters, which do not fit its networks: train it again" % (theta.size + gp.size))
         for name, widths in networks:
             layers, theta = _layers(theta, widths, name)
             arrays.update(layers)
+        if gp.size > 0:
+            inverse_scales, slope, bias, centres, weights = np.split(gp, [*sizes, sizes[-1] + num_inputs * num_centres])
+            arrays.update(f_inverse_scales=inverse_scales, f_slope=slope.reshape(num_inputs, dim), f_bias=bias,
+                          f_centres=centres.reshape(num_centres, num_inputs), f_weights=weights.reshape(num_centres, dim))
         return {name: np.asarray(value) for name, value in arrays.items()}
 
     def _network(self, name, a, last_linear=True):
@@ -163,6 +175,12 @@ class Model:
             if layer < num_layers or not last_linear:
                 a = np.arctan(a)
         return a
+
+    def _gp(self, h):
+        """Mean of the Gaussian process in f. h: inputs  [... x number of inputs]."""
+        distances = (h * self.arrays["f_inverse_scales"])[..., None, :] - self.arrays["f_centres"]
+        kernel = np.exp(-0.5 * np.sum(distances ** 2, axis=-1))
+        return h @ self.arrays["f_slope"] + self.arrays["f_bias"] + kernel @ self.arrays["f_weights"]
 
     def encode(self, images):
         """Encoder: z = g^-1(y), eq. (3a).
@@ -204,7 +222,8 @@ class Model:
         if self.options["increments"]:
             past[..., 1:, :] = features[..., :0:-1, :] - features[..., -2::-1, :]
         h = np.concatenate([past, torques[..., n - 1::-1, :] / self.arrays["max_torque"]], axis=-1)
-        change = self._network("f", h.reshape(h.shape[:-2] + (-1,)))
+        h = h.reshape(h.shape[:-2] + (-1,))
+        change = self._network("f", h) if self.options["predictor"] == "network" else self._gp(h)
         return features[..., -1, :] + change if self.options["residual"] else change
 
     def roll_out(self, features, torques):

@@ -61,6 +61,9 @@ class ParamReader {
   template <class Options>
   Options read(const std::string& block);
 
+  /// Adds a problem that concerns several blocks.
+  void report(const std::string& problem);
+
   /// All problems found so far, including unknown blocks. Empty if the configuration is valid.
   std::vector<std::string> problems() const;
 
@@ -75,7 +78,6 @@ class ParamReader {
                          const std::vector<std::string>& known_keys);
   void reportWrongType(const std::string& path, const YAML::Node& value,
                        const std::string& expected);
-  void report(const std::string& problem);
 
   YAML::Node root_;
   std::string source_;

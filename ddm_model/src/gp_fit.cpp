@@ -1,0 +1,215 @@
+// Fits the Gaussian process of model/predictor gp to features and torques.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gp_fit.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+namespace ddm {
+namespace {
+
+constexpr Eigen::Index kMaxLikelihoodSamples = 400;  // the time grows with the cube
+constexpr Eigen::Index kMaxCentres = 500;            // the time of a plan is proportional
+constexpr double kUnexplained = 0.1;  // variance without the centres / variance of the noise
+constexpr int kMaxIterations = 40;
+constexpr double kInitialNoise = 0.3;  // sigma, if the outputs have standard deviation 1
+constexpr double kJitter = 1e-8;       // added to the variance of the noise
+constexpr double kRidge = 1e-3;        // of the linear mean, per sample
+
+// Weights of the prior: each hyper-parameter p adds w (p - p_0)^2, which is small next to the
+// likelihood of a hundred samples.
+constexpr double kScalePrior = 0.02;  // of log l; p_0: log sqrt(D)
+constexpr double kSizePrior = 0.1;    // of log s and of log sigma; p_0: 0 and log 0.3
+
+Eigen::MatrixXd columnsOf(const Eigen::MatrixXd& matrix, const std::vector<Eigen::Index>& columns) {
+  Eigen::MatrixXd out(matrix.rows(), static_cast<Eigen::Index>(columns.size()));
+  for (size_t i = 0; i < columns.size(); ++i)
+    out.col(static_cast<Eigen::Index>(i)) = matrix.col(columns[i]);
+  return out;
+}
+
+/// @return standard deviations of the rows, or 1 where all values are equal
+Eigen::VectorXd spreadOf(const Eigen::MatrixXd& values) {
+  const Eigen::MatrixXd centred = values.colwise() - values.rowwise().mean();
+  const Eigen::VectorXd spread =
+      centred.rowwise().norm() / std::sqrt(static_cast<double>(values.cols()));
+  return (spread.array() > 0.0).select(spread, 1.0);
+}
+
+/// @return indices 0 ... count - 1 in a random order
+std::vector<Eigen::Index> shuffled(Eigen::Index count, std::mt19937_64* rng) {
+  std::vector<Eigen::Index> order(count);
+  std::iota(order.begin(), order.end(), Eigen::Index(0));
+  for (Eigen::Index i = count - 1; i > 0; --i) {
+    std::swap(order[i], order[std::uniform_int_distribution<Eigen::Index>(0, i)(*rng)]);
+  }
+  return order;
+}
+
+/// @return s^2 exp(-|a_i - a_j|^2 / 2) for all columns a of A  [N x N]
+Eigen::MatrixXd kernelMatrix(const Eigen::MatrixXd& A, double variance) {
+  const Eigen::VectorXd norms = 0.5 * A.colwise().squaredNorm();
+  Eigen::MatrixXd K = A.transpose() * A;
+  K.colwise() -= norms;
+  K.rowwise() -= norms.transpose();
+  return variance * K.array().min(0.0).exp();
+}
+
+/// Rank-M approximation L L' of a kernel matrix.
+struct PivotedCholesky {
+  Eigen::MatrixXd L;                 // [N x M]
+  std::vector<Eigen::Index> pivots;  // centres, in the order in which they were selected  [M]
+};
+
+/// @param A          inputs / l          [D x N]
+/// @param variance   s^2
+/// @param tolerance  largest variance that is not explained
+PivotedCholesky decompose(const Eigen::MatrixXd& A, double variance, double tolerance) {
+  const Eigen::Index max_rank = std::min(A.cols(), kMaxCentres);
+  PivotedCholesky out;
+  out.L.resize(A.cols(), max_rank);
+  Eigen::VectorXd rest = Eigen::VectorXd::Constant(A.cols(), variance);
+  for (Eigen::Index rank = 0; rank < max_rank; ++rank) {
+    Eigen::Index pivot;
+    if (rest.maxCoeff(&pivot) <= tolerance) break;
+    const Eigen::VectorXd distances = (A.colwise() - A.col(pivot)).colwise().squaredNorm();
+    Eigen::VectorXd column = variance * (-0.5 * distances).array().exp();
+    column.noalias() -= out.L.leftCols(rank) * out.L.row(pivot).head(rank).transpose();
+    out.L.col(rank) = column / std::sqrt(rest[pivot]);
+    rest = (rest - out.L.col(rank).cwiseAbs2()).cwiseMax(0.0);
+    rest[pivot] = 0.0;
+    out.pivots.push_back(pivot);
+  }
+  out.L.conservativeResize(Eigen::NoChange, static_cast<Eigen::Index>(out.pivots.size()));
+  return out;
+}
+
+}  // namespace
+
+Transitions transitionsOf(const PredictionModel<double>& f, const Eigen::MatrixXd& Z,
+                          const DataSet& data) {
+  const Eigen::Index n = f.order(), dim = f.featureDim(), motors = f.torqueDim();
+  Eigen::Index count = 0;
+  for (const Segment& segment : data.segments())
+    count += std::max<Eigen::Index>(segment.size - n, 0);
+  Transitions out{Eigen::MatrixXd(f.regressorDim(), count), Eigen::MatrixXd(dim, count)};
+  Eigen::Index i = 0;
+  for (const Segment& segment : data.segments()) {
+    for (Eigen::Index t = segment.begin + n - 1; t + 1 < segment.begin + segment.size; ++t, ++i) {
+      for (Eigen::Index lag = 0; lag < n; ++lag) {  // eq. (2)
+        auto h = out.regressors.col(i).segment(lag * (dim + motors), dim + motors);
+        h.head(dim) = Z.col(t - lag);
+        h.tail(motors) = data.torques().col(t - lag).cwiseQuotient(f.maxTorque());
+      }
+      out.changes.col(i) = Z.col(t + 1) - Z.col(t);
+    }
+  }
+  f.toIncrements(out.regressors);
+  return out;
+}
+
+DifferentiableFunction negativeLogLikelihood(const Eigen::MatrixXd& inputs,
+                                             const Eigen::MatrixXd& outputs) {
+  return [inputs, outputs](const Eigen::VectorXd& p, Eigen::VectorXd* gradient) {
+    const Eigen::Index D = inputs.rows(), N = inputs.cols();
+    const auto E = static_cast<double>(outputs.rows());
+    const Eigen::MatrixXd A = (-p.head(D)).array().exp().matrix().asDiagonal() * inputs;
+    const double noise = std::exp(2.0 * p[D + 1]);
+    const Eigen::MatrixXd K = kernelMatrix(A, std::exp(2.0 * p[D]));
+    Eigen::MatrixXd noisy = K;
+    noisy.diagonal().array() += noise + kJitter;
+    const Eigen::LLT<Eigen::MatrixXd> llt(noisy);
+    if (llt.info() != Eigen::Success) return std::numeric_limits<double>::quiet_NaN();
+    const Eigen::MatrixXd alpha = llt.solve(outputs.transpose());
+    const Eigen::VectorXd d_scales = p.head(D).array() - 0.5 * std::log(static_cast<double>(D));
+    const double d_size = p[D], d_noise = p[D + 1] - std::log(kInitialNoise);
+    if (gradient != nullptr) {
+      Eigen::MatrixXd d_K = llt.solve(0.5 * E * Eigen::MatrixXd::Identity(N, N));
+      d_K.noalias() -= 0.5 * alpha * alpha.transpose();
+      const double d_noise_variance = d_K.trace();
+      d_K = d_K.cwiseProduct(K);
+      const Eigen::VectorXd sums = d_K.rowwise().sum();
+      gradient->resize(D + 2);
+      gradient->head(D) = 2.0 * (A.cwiseAbs2() * sums - A.cwiseProduct(A * d_K).rowwise().sum()) +
+                          2.0 * kScalePrior * d_scales;
+      (*gradient)[D] = 2.0 * sums.sum() + 2.0 * kSizePrior * d_size;
+      (*gradient)[D + 1] = 2.0 * noise * d_noise_variance + 2.0 * kSizePrior * d_noise;
+    }
+    return 0.5 * outputs.transpose().cwiseProduct(alpha).sum() +
+           E * llt.matrixLLT().diagonal().array().log().sum() +
+           kScalePrior * d_scales.squaredNorm() +
+           kSizePrior * (d_size * d_size + d_noise * d_noise);
+  };
+}
+
+Eigen::VectorXd fitGp(const Transitions& transitions, std::mt19937_64* rng,
+                      const std::function<void()>& check) {
+  const Eigen::Index D = transitions.regressors.rows(), N = transitions.regressors.cols();
+  if (N == 0) {
+    throw std::invalid_argument(
+        "model/predictor gp needs segments with more than model/order "
+        "samples: record longer episodes, or reduce model/order");
+  }
+  const Eigen::VectorXd input_mean = transitions.regressors.rowwise().mean();
+  const Eigen::VectorXd input_spread = spreadOf(transitions.regressors);
+  const Eigen::MatrixXd inputs =
+      input_spread.cwiseInverse().asDiagonal() * (transitions.regressors.colwise() - input_mean);
+  // The linear mean function: ridge regression, whose penalty leaves the mean of the outputs alone.
+  const Eigen::VectorXd output_mean = transitions.changes.rowwise().mean();
+  Eigen::MatrixXd outputs = transitions.changes.colwise() - output_mean;
+  Eigen::MatrixXd gram = inputs * inputs.transpose();
+  gram.diagonal().array() += kRidge * static_cast<double>(N);
+  const Eigen::MatrixXd slope = gram.llt().solve(inputs * outputs.transpose()).transpose();
+  outputs -= slope * inputs;
+  const Eigen::VectorXd output_spread = spreadOf(outputs);
+  outputs = output_spread.cwiseInverse().asDiagonal() * outputs;
+
+  std::vector<Eigen::Index> drawn = shuffled(N, rng);
+  drawn.resize(std::min(N, kMaxLikelihoodSamples));
+  Eigen::VectorXd start(D + 2);
+  start.head(D).setConstant(0.5 * std::log(static_cast<double>(D)));
+  start.tail(2) << 0.0, std::log(kInitialNoise);
+  MinimiseOptions options;
+  options.max_iterations = kMaxIterations;
+  options.function_tolerance = 1e-5;
+  options.on_iteration = [&check](const Minimum&) {
+    check();
+    return true;
+  };
+  const Eigen::VectorXd p =
+      minimise(negativeLogLikelihood(columnsOf(inputs, drawn), columnsOf(outputs, drawn)), start,
+               options)
+          .x;
+
+  const double variance = std::exp(2.0 * p[D]), noise = std::exp(2.0 * p[D + 1]) + kJitter;
+  const Eigen::VectorXd inverse_scales =
+      (-p.head(D)).array().exp() / input_spread.array();  // of regressors as they are
+  const Eigen::MatrixXd A = inverse_scales.asDiagonal() * transitions.regressors;
+  const PivotedCholesky cholesky = decompose(A, variance, kUnexplained * noise);
+  const Eigen::MatrixXd& L = cholesky.L;
+  Eigen::MatrixXd normal = L.transpose() * L;
+  normal.diagonal().array() += noise;
+  Eigen::MatrixXd weights = normal.llt().solve(L.transpose() * outputs.transpose());
+  const Eigen::MatrixXd pivot_rows = columnsOf(L.transpose(), cholesky.pivots);  // upper triangle
+  pivot_rows.triangularView<Eigen::Upper>().solveInPlace(weights);
+
+  const Eigen::MatrixXd scaled_slope = slope * input_spread.cwiseInverse().asDiagonal();
+  const Eigen::VectorXd bias = output_mean - scaled_slope * input_mean;
+  const Eigen::MatrixXd centres = columnsOf(A, cholesky.pivots);
+  const Eigen::MatrixXd scaled_weights =
+      variance * output_spread.asDiagonal() * weights.transpose();
+  const auto flat = [](const Eigen::MatrixXd& matrix) {
+    return Eigen::Map<const Eigen::VectorXd>(matrix.data(), matrix.size());
+  };
+  Eigen::VectorXd theta(D + slope.size() + bias.size() + centres.size() + scaled_weights.size());
+  theta << inverse_scales, flat(scaled_slope), bias, flat(centres), flat(scaled_weights);
+  return theta;
+}
+
+}  // namespace ddm

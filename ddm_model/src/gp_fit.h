@@ -1,0 +1,54 @@
+// Fits the Gaussian process of model/predictor gp to features and torques.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <random>
+
+#include "ddm_model/data_set.h"
+#include "ddm_model/gp_mean.h"
+#include "ddm_model/minimise.h"
+#include "ddm_model/networks.h"
+
+namespace ddm {
+
+/// Regressors h_n of f and changes of the feature, for all samples of a data set that have n - 1
+/// predecessors and a successor.
+struct Transitions {
+  Eigen::MatrixXd regressors;  ///< inputs of GpMean, one sample per column [regressorDim() x N]
+  Eigen::MatrixXd changes;     ///< z_{t+1} - z_t                            [feature_dim x N]
+};
+
+/// @param f  with model/residual and model/increments
+/// @param Z  features of the samples of `data`  [feature_dim x >= numFrames()]
+Transitions transitionsOf(const PredictionModel<double>& f, const Eigen::MatrixXd& Z,
+                          const DataSet& data);
+
+/// Negative logarithm of the marginal likelihood of a Gaussian process with one kernel for all
+/// outputs (Rasmussen and Williams, 2006, eq. 2.30), plus a weak prior that keeps hyper-parameters
+/// finite which the data leave open:
+///
+///   k(x, x') = s^2 exp(-sum_d (x_d - x'_d)^2 / (2 l_d^2)) + sigma^2 delta(x, x')
+///
+/// as a function of (log l_1, ..., log l_D, log s, log sigma) for minimise().
+/// @param inputs   of standard deviation 1   [D x N]
+/// @param outputs  of standard deviation 1   [E x N]
+DifferentiableFunction negativeLogLikelihood(const Eigen::MatrixXd& inputs,
+                                             const Eigen::MatrixXd& outputs);
+
+/// Fits a sparse Gaussian process with a linear mean function, which ridge regression computes
+/// first. The hyper-parameters of the remaining errors maximise the marginal likelihood of at most
+/// 400 transitions, which are drawn at random. A pivoted Cholesky decomposition of the kernel
+/// matrix selects the centres among all transitions: it takes the transition whose output the
+/// centres so far explain worst, until the variance that is not explained is a tenth of the noise's
+/// everywhere, or until there are 500 centres. The weights follow from all transitions (subset of
+/// regressors: Rasmussen and Williams, 2006, Sec. 8.3.1).
+/// @param rng    draws the transitions
+/// @param check  called after each iteration; may throw to cancel the fit
+/// @return       parameters of GpMean
+/// @throws std::invalid_argument if there are no transitions
+Eigen::VectorXd fitGp(const Transitions& transitions, std::mt19937_64* rng,
+                      const std::function<void()>& check);
+
+}  // namespace ddm
