@@ -1,17 +1,19 @@
-// benchmark_kernels: measures computing times on a finished experiment, and message round trips.
+// benchmark_kernels: times the objective on a finished experiment, or round trips of messages.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <benchmark/benchmark.h>
 #include <ddm_bag_io/bag_cache.h>
+#include <ddm_common/image_codec.h>
 #include <ddm_common/tool.h>
-#include <ddm_model/minimise.h>
 #include <ddm_model/networks.h>
 #include <ddm_model/objective.h>
 #include <ddm_model/schedule.h>
-#include <ddm_model/trainer.h>
-#include <ddm_mpc/controller.h>
-#include <ddm_sim/plant.h>
-#include <ros/time.h>
+#include <ddm_msgs/Torque.h>
+#include <ddm_msgs/topics.h>
+#include <ros/ros.h>
+#include <sensor_msgs/Image.h>
 
+#include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <functional>
 #include <iostream>
@@ -23,59 +25,40 @@
 
 #include "configuration.h"
 #include "evaluation.h"
+#include "ros_driver.h"
 #include "run_folder.h"
 #include "start.h"
 
 namespace ddm {
-
-bool timesRoundTrips(int argc, char** argv);  // defined in round_trips.cpp
-
 namespace {
 
-constexpr int kRetrainIterations = 200;
 constexpr int kProductBlocks[] = {32, 64, 128, 256, 512, 1600};
-constexpr int kTrialSteps = 100;
+constexpr int kImageSize = 51;
+constexpr int kQueue = 1000;
+constexpr double kTimeout = 30.0;  // [s]
 
 constexpr char kAbout[] =
-    "Times objective, training and plans on the bags and the last model of a finished experiment; "
-    "or "
-    "round trips of messages.\n\n"
+    "Times the objective and its matrix products on the bags and the last model of a finished\n"
+    "experiment, or is one node of a loop and prints the mean time of a round trip [us]:\n\n"
+    "  lockstep         lets the real nodes run a random trial, without recorder\n"
+    "  bare_camera      publishes an image as soon as the torque for the previous image arrives\n"
+    "  bare_controller  answers each image with a torque\n\n"
     "usage: rosrun ddm_launch benchmark_kernels RUN_FOLDER [options of Google Benchmark]\n"
     "       rosrun ddm_launch benchmark_kernels lockstep|bare_camera|bare_controller NUM_FRAMES\n\n"
-    "`rosrun ddm_launch qa benchmark` runs both.";
-
-/// Results of a finished experiment: its configuration, all samples, and its last model.
-struct Experience {
-  Configuration configuration;
-  DataSet data;
-  std::shared_ptr<const Ddm> model;
-};
-
-Experience readExperience(const std::string& run) {
-  ParamReader reader = ParamReader::fromFiles({run + "/config.yaml"});
-  Configuration configuration = readConfiguration(&reader);
-  configuration.experiment.runs = run;
-  const RunFolder folder(configuration);
-  if (folder.rows().empty()) throw std::runtime_error(run + " holds no finished trial");
-  const int last = folder.rows().back().trial;
-  DataSet data = BagCache(configuration.model.image.size, configuration.model.data_set)
-                     .read(folder.bagsUpTo(last));
-  return {configuration, std::move(data), readModel(folder.modelPath(last))};
-}
-
-double percentile99(const std::vector<double>& values) { return quantile(values, 0.99); }
+    "`rosrun ddm_launch qa benchmark` runs both.\n";
 
 /// Registers a benchmark. Each repetition has one call, so that quantiles over repetitions are
 /// those of single calls.
-void measure(const std::string& name, int num_calls, const std::function<void()>& call) {
+void measure(const std::string& name, const std::function<void()>& call) {
   benchmark::RegisterBenchmark(name.c_str(),
                                [call](benchmark::State& state) {
                                  for (auto _ : state) call();
                                })
       ->Iterations(1)
-      ->Repetitions(num_calls)
+      ->Repetitions(1000)
       ->ReportAggregatesOnly(true)
-      ->ComputeStatistics("p99", percentile99)
+      ->ComputeStatistics("p99",
+                          [](const std::vector<double>& times) { return quantile(times, 0.99); })
       ->Unit(benchmark::kMicrosecond);
 }
 
@@ -129,109 +112,139 @@ class MatrixProducts {
   std::vector<Layer> layers_;
 };
 
-void measureObjective(const Experience& experience) {
-  const auto networks = std::make_shared<const Networks<float>>(experience.model->options(),
-                                                                experience.data.torqueDim());
-  const auto objective = std::make_shared<JointObjective<float>>(
-      *networks, makeTrainingData(experience.data, experience.model->pca()));
-  const Eigen::VectorXf theta = experience.model->theta().cast<float>();
-  const auto d_theta = std::make_shared<Eigen::VectorXf>();
-  const Terms terms = makeSchedule(experience.configuration.model.training).terms();
-  measure("objective_gradient", 1000, [networks, objective, theta, d_theta, terms]() {
-    benchmark::DoNotOptimize(objective->evaluate(theta, d_theta.get(), terms));
-  });
+void timeObjective(const std::string& run) {
+  ParamReader reader = ParamReader::fromFiles({run + "/config.yaml"});
+  Configuration configuration = readConfiguration(&reader);
+  configuration.experiment.runs = run;
+  const RunFolder folder(configuration);
+  if (folder.rows().empty()) throw std::runtime_error(run + " holds no finished trial");
+  const int last = folder.rows().back().trial;
+  const ModelConfig& config = configuration.model;
+  const DataSet data = BagCache(config.image.size, config.data_set).read(folder.bagsUpTo(last));
+  const std::shared_ptr<const Ddm> model = readModel(folder.modelPath(last));
+
+  const Networks<float> networks(model->options(), data.torqueDim());
+  JointObjective<float> objective(networks, makeTrainingData(data, model->pca()));
+  const Eigen::VectorXf theta = model->theta().cast<float>();
+  Eigen::VectorXf d_theta;
+  const Terms terms = makeSchedule(config.training).terms();
+  measure("objective_gradient",
+          [&] { benchmark::DoNotOptimize(objective.evaluate(theta, &d_theta, terms)); });
   for (const int block : kProductBlocks) {
-    const auto products = std::make_shared<MatrixProducts>(*networks, objective->numPredictions(),
+    const auto products = std::make_shared<MatrixProducts>(networks, objective.numPredictions(),
                                                            terms.prediction_steps, block);
-    measure("matrix_products/" + std::to_string(block), 1000, [products]() { products->run(); });
+    measure("matrix_products/" + std::to_string(block), [products] { products->run(); });
   }
+  benchmark::RunSpecifiedBenchmarks();
 }
 
-void measureTraining(const Experience& experience) {
-  const ModelConfig& config = experience.configuration.model;
-  TrainingOptions training = config.training;
-  training.max_iterations = kRetrainIterations;
-  training.function_tolerance = 1e-30;  // always run all iterations
-  measure("retrain", 10, [&experience, &config, training]() {
-    const TrainingResult result = train(experience.data, config.model, training, ModelInfo());
-    if (result.iterations < kRetrainIterations * training.num_starts) {
-      throw std::runtime_error("training ended after " + std::to_string(result.iterations) +
-                               " iterations: " + result.message);
-    }
-  });
-}
-
-/// Plans of evaluations on the true plant. The first torque of each plan moves the plant before the
-/// next plan.
-class PlanSequence {
+/// Mean time of round trips. Ignores the first kWarmUp round trips, in which connections and caches
+/// are new.
+class Stopwatch {
  public:
-  explicit PlanSequence(const Experience& experience)
-      : plant_(makePlant(*experience.configuration.plant)),
-        policy_(experience.model, experience.configuration.mpc) {}
+  /// Reports that `number` round trips are complete.
+  void tick(int number) {
+    if (number < kWarmUp) return;
+    last_ = {number, Clock::now()};
+    if (first_.first == 0) first_ = last_;
+  }
 
-  Plan next() {
-    if (step_++ % kTrialSteps == 0) {
-      id_.evaluation = true;
-      ++id_.trial;
-      std::mt19937_64 start = startStream(id_.seed, id_.trial, id_.evaluation);
-      plant_->setState(plant_->drawStart(start));
-      policy_.startTrial(id_);
-    }
-    policy_.observe(plant_->render(plant_->state()).bytes);
-    const Plan plan = policy_.plan();
-    const Eigen::VectorXd torque = plan.torques.col(0);
-    policy_.apply(torque);
-    plant_->step(torque);
-    return plan;
+  /// Prints the mean time of a round trip [us].
+  /// @throws std::runtime_error if fewer than two round trips have been reported
+  void print() const {
+    const int number = last_.first - first_.first;
+    if (number == 0) throw std::runtime_error("no round trip was timed");
+    const std::chrono::duration<double, std::micro> time = last_.second - first_.second;
+    std::cout << time.count() / number << "\n";
   }
 
  private:
-  std::unique_ptr<Plant> plant_;
-  MpcPolicy policy_;
-  TrialId id_;
-  int step_ = 0;
+  using Clock = std::chrono::steady_clock;
+  static constexpr int kWarmUp = 100;
+
+  std::pair<int, Clock::time_point> first_, last_;
 };
 
-/// Measures the time of plans along evaluations.
-void measurePlans(const Experience& experience) {
-  const auto sequence = std::make_shared<PlanSequence>(experience);
-  benchmark::RegisterBenchmark("plan",
-                               [sequence](benchmark::State& state) {
-                                 for (auto _ : state) {
-                                   const Plan plan = sequence->next();
-                                   state.SetIterationTime(plan.solve_time);
-                                   state.counters["plan_iterations"] = plan.iterations;
-                                 }
-                               })
-      ->Iterations(1)
-      ->Repetitions(2000)
-      ->UseManualTime()
-      ->ReportAggregatesOnly(true)
-      ->ComputeStatistics("p99", percentile99)
-      ->Unit(benchmark::kMicrosecond);
+/// Times the real nodes through the feedback of their trial. Subscribing to each image would add
+/// load.
+void timeLockstep(const ros::NodeHandle& nh, int num_frames) {
+  RosDriver::Peers peers;
+  peers.recorder = peers.trainer = false;
+  RosDriver driver(nh, kTimeout, peers);
+  TrialRequest request;
+  request.num_steps = num_frames;
+  request.epsilon = 1.0;
+  Stopwatch watch;
+  driver.runTrial(request, [&](double fraction) {
+    watch.tick(static_cast<int>(std::lround(fraction * num_frames)));
+  });
+  watch.print();
+}
+
+void timeBareCamera(ros::NodeHandle* nh, int num_frames) {
+  const std::vector<std::uint8_t> grey(kImageSize * kImageSize, 100);
+  const ros::Publisher images = nh->advertise<sensor_msgs::Image>(topics::kImage, kQueue);
+  ros::Time stamp(1, 0);
+  int num_answered = 0;
+  Stopwatch watch;
+  const auto show = [&] {
+    stamp += ros::Duration(0.2);
+    images.publish(encodeImage(grey, kImageSize, stamp, "camera"));
+  };
+  const auto on_torque = [&](const ddm_msgs::TorqueConstPtr& torque) {
+    if (torque->header.stamp != stamp) return;
+    watch.tick(++num_answered);
+    if (num_answered < num_frames) return show();
+    ros::shutdown();
+  };
+  const ros::Subscriber torques = nh->subscribe<ddm_msgs::Torque>(
+      topics::kTorque, kQueue, on_torque, ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay());
+  const ros::WallTimer start = nh->createWallTimer(ros::WallDuration(0.05), [&](const auto&) {
+    if (stamp == ros::Time(1, 0) && images.getNumSubscribers() && torques.getNumPublishers())
+      show();
+  });
+  ros::spin();
+  watch.print();
+}
+
+void answerImages(ros::NodeHandle* nh) {
+  const ros::Publisher torques = nh->advertise<ddm_msgs::Torque>(topics::kTorque, kQueue);
+  const auto on_image = [&torques](const sensor_msgs::ImageConstPtr& image) {
+    ddm_msgs::Torque torque;
+    torque.header.stamp = image->header.stamp;
+    torque.torque = {1.0};
+    torques.publish(torque);
+  };
+  const ros::Subscriber images = nh->subscribe<sensor_msgs::Image>(
+      topics::kImage, kQueue, on_image, ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay());
+  ros::spin();
+}
+
+void run(int argc, char** argv) {
+  const std::string what = argv[1];
+  if (what != "lockstep" && what != "bare_camera" && what != "bare_controller") {
+    ros::Time::init();
+    benchmark::Initialize(&argc, argv);
+    return timeObjective(what);
+  }
+  ros::init(argc, argv, what);
+  ros::NodeHandle nh;
+  if (what == "bare_controller") return answerImages(&nh);
+  const int num_frames = argc > 2 ? std::stoi(argv[2]) : 3000;
+  if (what == "lockstep") return timeLockstep(nh, num_frames);
+  timeBareCamera(&nh, num_frames);
 }
 
 }  // namespace
 }  // namespace ddm
 
 int main(int argc, char** argv) {
-  ros::Time::init();
-  ddm::silenceSolverLog();
   if (argc < 2 || argv[1][0] == '-') {
-    std::cout << ddm::kAbout << "\n";
+    std::cout << ddm::kAbout;
     return argc < 2 ? ddm::kUsageError : EXIT_SUCCESS;
   }
   try {
-    if (ddm::timesRoundTrips(argc, argv)) return EXIT_SUCCESS;
-    const ddm::Experience experience = ddm::readExperience(argv[1]);
-    ddm::measureObjective(experience);
-    ddm::measureTraining(experience);
-    ddm::measurePlans(experience);
-    argv[1] = argv[0];
-    int num_options = argc - 1;
-    benchmark::Initialize(&num_options, argv + 1);
-    if (benchmark::ReportUnrecognizedArguments(num_options, argv + 1)) return ddm::kUsageError;
-    benchmark::RunSpecifiedBenchmarks();
+    ddm::run(argc, argv);
   } catch (const std::exception& error) {
     std::cerr << "benchmark_kernels: " << error.what() << "\n";
     return EXIT_FAILURE;

@@ -5,6 +5,7 @@ import contextlib
 import math
 import os
 import platform
+import re
 import signal
 import sys
 
@@ -123,20 +124,7 @@ def processor(path="/proc/cpuinfo"):
     name."""
     try:
         with open(path) as stream:
-            first = stream.read().split("\n\n")[0]
-        facts = {name.strip(): value.strip() for name, _, value in (line.partition(":") for line in first.splitlines())}
-        name = facts["model name"]
+            facts = dict(re.findall(r"^(model name|cpu family|model)\s*: (.*)$", stream.read(), re.MULTILINE))
+        return "%s (family %s, model %s)" % (facts["model name"], facts["cpu family"], facts["model"])
     except (OSError, KeyError):
-        return platform.processor() or "?"
-    if "cpu family" in facts and "model" in facts:
-        name += " (family %s, model %s)" % (facts["cpu family"], facts["model"])
-    return name
-
-
-def distribution(path="/etc/os-release"):
-    """Name and version of the Linux distribution, or "?" if unknown."""
-    try:
-        with open(path) as stream:
-            return dict(line.rstrip("\n").split("=", 1) for line in stream if "=" in line)["PRETTY_NAME"].strip('"')
-    except (OSError, KeyError):
-        return "?"
+        return platform.processor() or platform.machine()
