@@ -13,7 +13,7 @@ from ddm_launch import figure, figure_style, film, learning_curve, success_rate
 from ddm_launch.command import Failure
 from ddm_launch.plant import draw_evaluation
 from ddm_model.model import load
-from ddm_study import program
+from ddm_study import study
 
 RESULTS = os.path.join(PACKAGE, "results")
 PUBLISHED = os.path.join(RESULTS, "published", "success_rate.csv")
@@ -25,11 +25,11 @@ FIGURES = [
     (figure.main, "learning_curve first_run"),
     (figure.main, "success_rate DDM=paper/trials.csv oracle=paper/oracle/trials.csv --published published/success_rate.csv"),
     (figure.main, "success_rate efficient=efficient/trials.csv --wilson"),
-    (program.main, "figure angle_trajectories paper/angle_trajectories.csv"),
-    (program.main, "figure feature_plane joint=paper/tile sequential=paper/tile_predictions/sequential"),
-    (program.main, "figure pendulum_feature_space paper/pendulum/feature_space.csv --model paper/pendulum/model.ddm"),
-    (program.main, "figure prediction_strip paper/tile"),
-    (program.main, "figure task efficient/tasks/suite_pendulum/trials.csv --task suite_pendulum")]
+    (study.main, "figure angle_trajectories paper/angle_trajectories.csv"),
+    (study.main, "figure feature_plane joint=paper/tile sequential=paper/tile_predictions/sequential"),
+    (study.main, "figure pendulum_feature_space paper/pendulum/feature_space.csv --model paper/pendulum/model.ddm"),
+    (study.main, "figure prediction_strip paper/tile"),
+    (study.main, "figure task efficient/tasks/suite_pendulum/trials.csv --task suite_pendulum")]
 
 
 @pytest.fixture(name="sweep")

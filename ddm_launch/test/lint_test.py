@@ -37,7 +37,7 @@ ALGORITHM, MOST_TIDIED = ("objective.cpp", "trainer.cpp", "planner.cpp", "contro
 UNSAFE_PYTHON = re.compile(r"\b(eval|exec|execvp)\(|\bpickle\b|\bos\.(system|popen)\b|shell=True|allow_pickle=True|"
                            r"yaml\.(unsafe_|full_)?load(_all)?\((?!.*Loader=(LOADER|yaml\.BaseLoader)\))")
 UNSAFE_CPP = re.compile(r"\b(system|popen|dlopen|exec[lv]p?e?)\(")
-MAY_EXECUTE = ("ddm_study/pages.py", "ddm_study/program.py")  # these execute text of the pages, and make
+MAY_EXECUTE = ("ddm_study/pages.py", "ddm_study/study.py")  # these execute text of the pages, and make
 
 
 def output_of(*command):

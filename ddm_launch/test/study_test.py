@@ -11,7 +11,7 @@ from processes import call, call_main, find_program, has_mujoco, run_experiment
 from rooms import PACKAGE
 from ddm_launch.command import Failure
 from ddm_study import collect, diagnosis, pages, results
-from ddm_study.program import main
+from ddm_study.study import main
 from run_files import read_rows
 
 STUDY = os.path.join(PACKAGE, "study", "scripts", "study")

@@ -59,6 +59,12 @@ class Failure(Exception):
     exit_code = 1
 
 
+class BadOptions(Failure):
+    """The program refuses its options."""
+
+    exit_code = 2
+
+
 def run_program(name, work):
     """Calls work() and returns its exit code. Prints a failure or signal on stderr and returns 1, or 128 + the signal's
     number."""

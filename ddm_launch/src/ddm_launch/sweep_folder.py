@@ -9,7 +9,7 @@ import subprocess
 
 import yaml
 
-from ddm_launch.command import Failure, find_program
+from ddm_launch.command import BadOptions, Failure, find_program
 from ddm_launch.settings import differences, read_yaml
 from ddm_model.plain_file import remove_unfinished, write_file
 
@@ -39,12 +39,6 @@ code=$?
 ((code <= 128)) || echo "ended by signal $(kill -l "$code")"
 exit "$code"
 """
-
-
-class BadOptions(Failure):
-    """The program refuses its options."""
-
-    exit_code = 2
 
 
 def find_setup(program):
