@@ -6,6 +6,8 @@ import re
 import sys
 import time
 
+import pandas
+
 from ddm_launch.command import Interrupted, expand_home, number, program_parser, run_program
 from ddm_launch.gnu_parallel import GnuParallel
 from ddm_launch.slurm import SlurmArray, remembered
@@ -118,11 +120,12 @@ def report(folder, seeds, start):
     elif problems:
         print("\n".join(["sweep: not finished:"] + ["  seed %d: %s" % problem for problem in problems.items()]
                         + ["sweep: the same command resumes where this one ended"]), file=sys.stderr)
-    versions = sorted({row.get("version", "?") for rows in finished.values() for row in rows})
+    versions = sorted({version for table in finished.values() for version in table.get("version", ())})
     if len(versions) > 1:
         print("sweep: warning: the seeds come from %d versions of the code, they may not be comparable: %s"
               % (len(versions), ", ".join(versions)), file=sys.stderr)
-    known = [float(rows[-1]["success"]) for rows in finished.values() if rows[-1].get("success")]
+    last = [table.get("success", pandas.Series([""])).iloc[-1] for table in finished.values()]
+    known = [float(success) for success in last if success]
     print("%d of %d seeds finished%s; this call took %.1f s" % (
         len(finished), len(seeds), ", mean success at the last trial %.2f" % (sum(known) / len(known)) if known else "",
         time.monotonic() - start))

@@ -1,12 +1,13 @@
 # Class SweepFolder: the folder of a sweep with the script for one seed, and the results of all seeds.
 # SPDX-License-Identifier: BSD-3-Clause
 import contextlib
-import csv
 import os
+import pathlib
 import platform
 import shlex
 import subprocess
 
+import pandas
 import yaml
 
 from ddm_launch.command import BadOptions, Failure, find_program
@@ -43,15 +44,14 @@ exit "$code"
 
 def find_setup(program):
     """Path of the setup.bash that each seed sources first, also on other hosts. This is the file of the topmost
-    workspace in CMAKE_PREFIX_PATH, which may have plants that the workspace of the program lacks. Without such a
-    workspace, it is the file of the program's workspace. Raises Failure if no setup.bash exists."""
+    workspace in CMAKE_PREFIX_PATH, which may have plants that the workspace of the program lacks. Raises Failure if no
+    setup.bash exists."""
     prefix = os.path.dirname(os.path.dirname(os.path.dirname(program)))  # program is PREFIX/lib/ddm_launch/PROGRAM
     for folder in os.environ.get("CMAKE_PREFIX_PATH", "").split(os.pathsep) + [prefix]:
         path = os.path.join(folder, "setup.bash")
         if folder and os.path.isfile(path):
             return path
-    raise Failure("there is no setup.bash in %s, where %s comes from, nor in CMAKE_PREFIX_PATH: source the "
-                  "workspace's devel/setup.bash" % (prefix, program))
+    raise Failure("there is no setup.bash in %s nor in CMAKE_PREFIX_PATH: source the workspace's devel/setup.bash" % prefix)
 
 
 def lock(path):
@@ -111,18 +111,18 @@ class SweepFolder:
             lock(self._lock)
         except OSError as error:
             raise Failure("cannot write into the folder %s (%s): choose another with --out" % (self.path, error.strerror))
-        with contextlib.ExitStack() as stack:
-            stack.callback(self.__exit__)
+        try:
             remove_unfinished(self.path)
             self._require_same_sweep({"program": program, "options": options})
-            stack.pop_all()
+        except BaseException:
+            self.__exit__()
+            raise
 
     def __enter__(self):
         return self
 
     def __exit__(self, *_):
-        with contextlib.suppress(FileNotFoundError):  # a user may have deleted it
-            os.remove(self._lock)
+        pathlib.Path(self._lock).unlink(missing_ok=True)  # a user may have deleted it
 
     def _check_options(self, seed):
         """Runs the program with an output folder that cannot be created. With valid options the program fails for this
@@ -162,8 +162,7 @@ class SweepFolder:
             ("folder", self.path), ("setup", self._setup), ("working_folder", os.getcwd()))}
         write_file(self.script, SCRIPT.format(command=" ".join(map(shlex.quote, DIE_WITH_PARENT + self._command)), **quoted))
         for seed in seeds:
-            with contextlib.suppress(FileNotFoundError):
-                os.remove(self.log(seed))
+            pathlib.Path(self.log(seed)).unlink(missing_ok=True)
 
     def last_words(self, seed):
         """Last line of output of a seed's program, with the path of the log."""
@@ -177,51 +176,44 @@ class SweepFolder:
     def collect(self, seeds):
         """Writes sweep.csv with the rows of all finished seeds. Removes the file if no seed is finished.
 
-        Returns ({seed: rows}, {seed: problem}), which together contain all seeds.
+        Returns ({seed: table}, {seed: problem}), which together contain all seeds.
         """
-        finished, problems, lines, first = {}, {}, [], None
+        tables, problems = {}, {}
         for seed in sorted(seeds):
-            if not self.is_finished(seed):
-                problems[seed] = self.last_words(seed)
-                continue
             try:
+                if not self.is_finished(seed):
+                    raise Failure(self.last_words(seed))
                 table = self._read_table(seed)
-                first = first or (seed, table[0])
-                self._require_same_experiment(first, seed, table[0])
+                for first in list(tables)[:1]:
+                    self._require_same_experiment(first, tables[first], seed, table)
+                tables[seed] = table
             except Failure as error:
                 problems[seed] = str(error)
-                continue
-            lines += table[1:]
-            finished[seed] = list(csv.DictReader(table))
-        if first:
-            write_file(self.table, "\n".join([first[1]] + lines) + "\n")
+        if tables:
+            write_file(self.table, pandas.concat(tables.values()).to_csv(index=False))
         else:
-            with contextlib.suppress(FileNotFoundError):
-                os.remove(self.table)
-        return finished, problems
+            pathlib.Path(self.table).unlink(missing_ok=True)
+        return tables, problems
 
     def _read_table(self, seed):
-        """Lines of a finished seed's table up to the requested trial, starting with the header. Raises Failure if the
-        table is damaged."""
+        """Table of a finished seed up to the requested trial. All cells are texts. Raises Failure if the table is
+        damaged."""
         path = os.path.join(self.seed_folder(seed), self._table_of_seed)
         try:
-            with open(path, newline="") as stream:
-                lines = stream.read().splitlines()
-        except (OSError, UnicodeDecodeError) as error:
-            raise Failure("%s cannot be read (%s): remove the folder, and the seed is run again" % (path, error))
-        count = len(lines) - 1 if self.trials is None else self.trials + 1
-        rows = list(csv.DictReader(lines))
-        if not 1 <= count <= len(rows) or any(row.get("seed") != str(seed) for row in rows):
-            raise Failure("%s must hold %s rows of seed %d: remove the folder, and the seed is run again"
-                          % (path, "some" if self.trials is None else count, seed))
-        return lines[:count + 1]
+            table = pandas.read_csv(path, dtype=str, keep_default_na=False)
+        except (OSError, ValueError):  # pandas raises several kinds of ValueError for invalid contents
+            table = pandas.DataFrame()
+        count = max(1, len(table)) if self.trials is None else self.trials + 1
+        if len(table) < count or set(table.get("seed", ())) != {str(seed)}:
+            raise Failure("%s must hold %d rows of seed %d: remove the folder, and the seed is run again" % (path, count, seed))
+        return table.head(count)
 
-    def _require_same_experiment(self, first, seed, header):
+    def _require_same_experiment(self, first, first_table, seed, table):
         """Raises Failure if columns or configuration of this seed differ from those of the first finished seed."""
-        there, here = (read_yaml(os.path.join(self.seed_folder(k), "config.yaml")) for k in (first[0], seed))
+        there, here = (read_yaml(os.path.join(self.seed_folder(k), "config.yaml")) for k in (first, seed))
         found = differences(there, here, MAY_DIFFER)
-        if header != first[1]:
+        if list(first_table) != list(table):
             found.append("columns of %s" % self._table_of_seed)
         if found:
             raise Failure("%s is not the experiment of seed %d: %s; use another folder for it"
-                          % (self.seed_folder(seed), first[0], ", ".join(found)))
+                          % (self.seed_folder(seed), first, ", ".join(found)))
