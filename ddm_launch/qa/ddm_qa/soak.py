@@ -7,13 +7,14 @@ import shutil
 import socket
 import time
 
+import pandas
 import rosbag
 import rosgraph
 from tqdm import tqdm
 
 from ddm_launch.command import Failure, number, program_parser, run_program
 from ddm_launch.run_folder import is_finished, num_finished, read_setting, read_trajectory
-from ddm_launch.tables import write_csv
+from ddm_model.plain_file import write_file
 from ddm_qa.processes import free_port, pid_of, start_roslaunch
 
 CALL_LIMIT_S = 30.0  # time limit of a call to a master or node
@@ -31,13 +32,6 @@ IMAGES = 2.0  # largest memory of model_node per frame [images]: one image, and 
 # trial began; one of the two is None. image_bytes: size of an image if the stored images of model_node may increase its
 # memory, else None.
 Soak = collections.namedtuple("Soak", "name config arguments trials seconds image_bytes")
-# Measurement of a node after a trial. time_s: time since the first trial began.
-Sample = collections.namedtuple("Sample", "run node trial time_s rss_kb open_files")
-# Frames of a trial or of its evaluation. A frame is lost if the camera did not publish its image, if the image did not
-# arrive, or if no torque answered it. Each loss leaves a gap between the times of the answered frames, which are
-# otherwise dt apart.
-Frames = collections.namedtuple("Frames", "run trial part due answered lost")
-Target = collections.namedtuple("Target", "run target measured passed")
 
 ABOUT = """\
 Runs long experiments of the real nodes and looks at each process after each trial: lockstep, 300 trials in a few
@@ -52,28 +46,26 @@ Exit code: 0 all passed, 1 not, 2 bad options."""
 
 
 def judge(soak, samples, frames):
-    """Judges a run. Returns its Targets."""
-    last = samples[-1].trial
+    """Judges a run. Returns the rows of targets.csv."""
+    last, rows = samples.trial.max(), []
     tenth = max(1, last // 10)
-    for node in sorted({sample.node for sample in samples}):
-        of_node = [sample for sample in samples if sample.node == node]
-        first, end = next(sample for sample in of_node if sample.trial >= tenth), of_node[-1]
-        grown = end.rss_kb / first.rss_kb - 1.0
-        measured, passed = "%.1f MB after trial %d, %.1f MB after trial %d: %+.1f %%" % (
-            first.rss_kb / 1024.0, first.trial, end.rss_kb / 1024.0, end.trial, 100.0 * grown), grown <= GROWTH
+    for node, of_node in samples.groupby("node"):
+        first, end = of_node[of_node.trial >= tenth].iloc[0], of_node.iloc[-1]
+        most_kb = (1.0 + GROWTH) * first.rss_kb
         if soak.image_bytes and node == "model_node":
-            num_kept = sum(row.answered for row in frames if row.part == "trial" and first.trial < row.trial <= end.trial)
-            images = 1024.0 * (end.rss_kb - first.rss_kb) / soak.image_bytes / max(1, num_kept)
-            measured, passed = "%s, %.2f images a frame" % (measured, images), images <= IMAGES
-        yield Target(soak.name, "resident memory of %s" % node, measured, int(passed))
+            kept = frames[(frames.part == "trial") & (frames.trial > first.trial) & (frames.trial <= end.trial)]
+            most_kb = first.rss_kb + IMAGES * kept.answered.sum() * soak.image_bytes / 1024.0
+        rows.append(("resident memory of " + node, "%.1f MB after trial %d, %.1f MB after trial %d, at most %.1f MB" % (
+            first.rss_kb / 1024.0, first.trial, end.rss_kb / 1024.0, end.trial, most_kb / 1024.0), end.rss_kb <= most_kb))
         # The maximum depends on whether a bag happens to be open when a sample is taken. The minimum does not, and a leak
         # raises it.
-        early = min(sample.open_files for sample in of_node if tenth <= sample.trial <= 2 * tenth)
-        late = min(sample.open_files for sample in of_node if sample.trial >= last - tenth)
-        yield Target(soak.name, "open files of %s" % node, "at least %d in trials %d to %d, %d in trials %d to %d" % (
-            early, tenth, 2 * tenth, late, last - tenth, last), int(late <= early))
-    lost = sum(row.lost for row in frames)
-    yield Target(soak.name, "lost frames", "%d of %d" % (lost, sum(row.due for row in frames)), int(lost == 0))
+        early = of_node[of_node.trial.between(tenth, 2 * tenth)].open_files.min()
+        late = of_node[of_node.trial >= last - tenth].open_files.min()
+        rows.append(("open files of " + node, "at least %d in trials %d to %d, %d in trials %d to %d" % (
+            early, tenth, 2 * tenth, late, last - tenth, last), late <= early))
+    rows.append(("lost frames", "%d of %d" % (frames.lost.sum(), frames.due.sum()), frames.lost.sum() == 0))
+    return pandas.DataFrame([(soak.name, target, measured, int(passed)) for target, measured, passed in rows],
+                            columns=["run", "target", "measured", "passed"])
 
 
 def answered_times(bag_path):
@@ -86,27 +78,34 @@ def answered_times(bag_path):
 
 
 def count_frames(run, folder, num_trials):
-    """Counts the frames of the first trials of a run folder and of their evaluations, which are not recorded."""
+    """Counts the frames of the first trials of a run folder and of their evaluations, which are not recorded. Returns
+    the rows of frames.csv.
+
+    A frame is lost if the camera did not publish its image, if the image did not arrive, or if no torque answered it.
+    Each loss leaves a gap between the times of the answered frames, which are otherwise dt apart.
+    """
     dt = float(read_setting(folder, "plant", "dt", "time between two images"))
-    num_steps = int(read_setting(folder, "trial", "num_steps", "frames of a trial"))
+    num_steps, rows = int(read_setting(folder, "trial", "num_steps", "frames of a trial")), []
     for trial in range(num_trials):
         for part, times in (("trial", answered_times(os.path.join(folder, "trial_%03d" % trial, "trial.bag"))),
                             ("evaluation", read_trajectory(os.path.join(folder, "evaluation_%03d" % trial)).time_s.tolist())):
             due = max(num_steps, int(round((times[-1] - times[0]) / dt)) + 1 if len(times) else 0)
-            yield Frames(run, trial, part, due, len(times), due - len(times))
+            rows.append((run, trial, part, due, len(times), due - len(times)))
+    return pandas.DataFrame(rows, columns=["run", "trial", "part", "due", "answered", "lost"])
 
 
 def look(soak, processes, trial, seconds):
-    """Returns a Sample of each process."""
+    """Returns a row of soak.csv for each process."""
     for name, pid in processes.items():
         with open("/proc/%d/status" % pid) as stream:
             rss_kb = int(re.search(r"VmRSS:\s+(\d+) kB", stream.read()).group(1))
-        yield Sample(soak.name, name, trial, round(seconds, 2), rss_kb, len(os.listdir("/proc/%d/fd" % pid)))
+        yield {"run": soak.name, "node": name, "trial": trial, "time_s": round(seconds, 2), "rss_kb": rss_kb,
+               "open_files": len(os.listdir("/proc/%d/fd" % pid))}
 
 
 def follow(soak, launch, master, run_folder):
-    """Takes samples of a launch until the launch ends or its time is over. Raises Failure if a trial takes too long or
-    the launch ends early."""
+    """Returns the rows of soak.csv. Takes samples of a launch until the launch ends or its time is over. Raises Failure
+    if a trial takes too long or the launch ends early."""
     begin, news, count, processes, samples = None, time.monotonic(), 0, {}, []
     while launch.isRunning() and (soak.seconds is None or begin is None or time.monotonic() - begin < soak.seconds):
         time.sleep(0.02)
@@ -120,13 +119,13 @@ def follow(soak, launch, master, run_folder):
                 samples += look(soak, processes, count - 1, news - begin)
         if time.monotonic() - news > TRIAL_LIMIT_S:
             raise Failure("no trial has ended within %g s" % TRIAL_LIMIT_S)
-    if launch.isRunning() == is_finished(run_folder) or not samples or samples[-1].trial == 0:
+    if launch.isRunning() == is_finished(run_folder) or not samples or samples[-1]["trial"] == 0:
         raise Failure("it ended before its time, or fewer than two trials ended: raise --minutes or --trials")
-    return samples
+    return pandas.DataFrame(samples)
 
 
 def make(soak, out):
-    """Runs a Soak in OUT/NAME and returns (samples, frames). run: folder of the experiment. ros: logs of its nodes.
+    """Runs a Soak in OUT/NAME and returns its tables by name. run: folder of the experiment. ros: logs of its nodes.
     output.txt: output of the launch."""
     folder, port = os.path.join(out, soak.name), free_port()
     config, run_folder = os.path.join(folder, "config.yaml"), os.path.join(folder, "run")
@@ -146,29 +145,27 @@ def make(soak, out):
         launch.stop()
         with open(os.path.join(folder, "output.txt"), "w") as stream:
             stream.write(launch.output)
-    return samples, list(count_frames(soak.name, run_folder, samples[-1].trial + 1))
+    frames = count_frames(soak.name, run_folder, samples.trial.max() + 1)
+    return {"soak.csv": samples, "frames.csv": frames, "targets.csv": judge(soak, samples, frames)}
 
 
 def run(options):
-    out, tables = os.path.abspath(options.out), ([], [], [])
+    out = os.path.abspath(options.out)
     # model_node stores all images, so its memory grows. The run lockstep has images of the usual size and measures this
     # growth; the run real_time has the smallest images, so that other growth becomes visible. The camera's own images
     # have the usual size in both runs.
-    for soak in tqdm((Soak("lockstep", CONFIG % (51, 20), [], options.trials, None, 51 ** 2),
-                      Soak("real_time", CONFIG % (5, options.steps) + LONG_TRAINING, ["real_time:=true"], None,
-                           60.0 * options.minutes, None)), unit="run", disable=None):
-        samples, frames = make(soak, out)
-        for table, rows in zip(tables, (samples, frames, judge(soak, samples, frames))):
-            table.extend(rows)
-    for name, kind, rows in zip(("soak.csv", "frames.csv", "targets.csv"), (Sample, Frames, Target), tables):
-        write_csv(os.path.join(out, name), kind._fields, rows)
-    targets = tables[2]
-    for target in targets:
+    soaks = (Soak("lockstep", CONFIG % (51, 20), [], options.trials, None, 51 ** 2),
+             Soak("real_time", CONFIG % (5, options.steps) + LONG_TRAINING, ["real_time:=true"], None, 60.0 * options.minutes, None))
+    made = [make(soak, out) for soak in tqdm(soaks, unit="run", disable=None)]
+    tables = {name: pandas.concat([of_run[name] for of_run in made]) for name in made[0]}
+    for name, table in tables.items():
+        write_file(os.path.join(out, name), table.to_csv(index=False))
+    targets = tables["targets.csv"]
+    for target in targets.itertuples():
         print("%-6s  %s: %s: %s" % ("passed" if target.passed else "failed", target.run, target.target, target.measured))
-    num_passed = sum(target.passed for target in targets)
     print("results: %s" % out)
-    print("%d passed, %d failed" % (num_passed, len(targets) - num_passed))
-    return 0 if num_passed == len(targets) else 1
+    print("%d passed, %d failed" % (targets.passed.sum(), (1 - targets.passed).sum()))
+    return 0 if targets.passed.all() else 1
 
 
 def main():
