@@ -3,13 +3,13 @@
 import errno
 import os
 import platform
-import resource
 import shutil
 import signal
+import subprocess
 
 import pytest
 
-from processes import call_main, run_experiment
+from processes import call_main, find_program, run_experiment
 from run_files import differences, expected_files, files_in, read_bytes, read_rows, read_yaml
 from sweeps import (Sweep, assert_ends, assert_nothing_runs, assert_table, debug, is_finished, programs_of, seed_folder, snapshot,
                     wait_for)
@@ -184,12 +184,9 @@ def test_folders_and_files_that_cannot_be_written_are_named(out, tmp_path):
     (tmp_path / "plain_file").write_text("")
     for folder in (str(tmp_path / "plain_file"), "/proc/ddm"):
         assert_ends(1, ["cannot write", folder], *debug(folder))
-    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (10, limits[1]))  # simulates a full disk
-    try:
-        assert_ends(1, ["sweep: ", out, os.strerror(errno.EFBIG)], *debug(out))
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    done = subprocess.run(["prlimit", "--fsize=10", find_program("sweep"), *map(str, debug(out))],  # simulates a full disk
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
+    assert done.returncode == 1 and all(word in done.stdout for word in ("sweep: ", out, os.strerror(errno.EFBIG))), done.stdout
     assert files_in(out) == []
 
 

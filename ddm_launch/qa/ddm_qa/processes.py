@@ -5,7 +5,8 @@ import random
 import signal
 import socket
 import subprocess
-import threading
+import tempfile
+import time
 import urllib.parse
 import xmlrpc.client
 
@@ -44,16 +45,12 @@ class Process:
     """A program whose output (stdout and stderr together) can be read while it runs. As a context manager it ends the
     program."""
 
-    def __init__(self, command, environment=None, folder=None, output=subprocess.PIPE):
+    def __init__(self, command, environment=None, folder=None, output=None):
         """output: file descriptor of a terminal that shows the output. The output is then not available here."""
-        self._changed = threading.Condition()
-        self._text, self._ended = "", False
+        self._file = tempfile.TemporaryFile()
         self._process = subprocess.Popen(
             [str(word) for word in command], env=environment or line_by_line(), cwd=folder, stdin=subprocess.DEVNULL,
-            stdout=output, stderr=subprocess.STDOUT)
-        self._reader = threading.Thread(target=self._read, daemon=True)
-        if output == subprocess.PIPE:
-            self._reader.start()
+            stdout=self._file if output is None else output, stderr=subprocess.STDOUT)
 
     def __enter__(self):
         return self
@@ -61,43 +58,31 @@ class Process:
     def __exit__(self, *_):
         self.stop()
 
-    def _read(self):
-        with self._process.stdout as stream:
-            for line in stream:
-                with self._changed:
-                    self._text += line.decode(errors="replace")
-                    self._changed.notify_all()
-        with self._changed:
-            self._ended = True
-            self._changed.notify_all()
-
     @property
     def pid(self):
         return self._process.pid
 
     @property
     def output(self):
-        return self._text
+        return os.pread(self._file.fileno(), os.fstat(self._file.fileno()).st_size, 0).decode(errors="replace")
 
     def waitForText(self, text, limit_s):
         """Returns as soon as the output contains this text. Raises TimeoutError if the program ends or the time is over
         before."""
-        with self._changed:
-            self._changed.wait_for(lambda: text in self._text or self._ended, limit_s)
-        if text not in self._text:
+        end = time.monotonic() + limit_s
+        while self.isRunning() and time.monotonic() < end and text not in self.output:
+            time.sleep(0.02)
+        if text not in self.output:
             self.stop()
             raise TimeoutError("'%s' did not come within %g s:\n%s" % (text, limit_s, self.output))
 
     def waitForEnd(self, limit_s):
         """Waits for the end and returns the exit code. Raises TimeoutError if the program does not end in time."""
         try:
-            code = self._process.wait(limit_s)
+            return self._process.wait(limit_s)
         except subprocess.TimeoutExpired:
             self.stop()
-            raise TimeoutError("not at its end after %g s:\n%s" % (limit_s, self.output))
-        if self._reader.is_alive():
-            self._reader.join(10.0)
-        return code
+            raise TimeoutError("not at its end after %g s:\n%s" % (limit_s, self.output)) from None
 
     def isRunning(self):
         return self._process.poll() is None
