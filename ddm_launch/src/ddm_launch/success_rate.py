@@ -24,9 +24,6 @@ METHODS = (("DDM + MPC", "ddm_mpc", "ddm_mpc_se"),
 # Colours and markers of our curves whose names are not in METHOD_STYLES, in order.
 OTHERS = ((SKY, "h"), (YELLOW, "p"), (BLACK, "d"), (GREY, "x"))
 LONGEST_PAIR = 54  # largest total length of two labels that fit side by side in a column [characters]
-# Largest number of curves that a reader can distinguish. In figures with more curves, the curves that are mostly 0
-# appear only in the legend.
-MOST_CURVES = 5
 
 # Success rates of one method. rates: table with the index frames and the columns rate, low and high; low and high are
 # the ends of the error bars or of the band, or NaN if unknown.
@@ -67,16 +64,6 @@ def styles(names):
     return dict(METHOD_STYLES, **dict(zip(others, OTHERS)))
 
 
-def is_mostly_zero(curve):
-    return curve.rates.rate.median() == 0.0 and curve.rates.rate.max() < 0.5
-
-
-def in_words(curve):
-    """Label in the legend for a curve that is not drawn."""
-    most = curve.rates.rate.max()
-    return curve.label + (": mostly 0, at most %.2g" % most if most else ": 0")
-
-
 def level_line(rates, last_frames):
     """Extends the rates of a method that learns from no images, such as the oracle, to a level line up to last_frames.
     Returns other rates unchanged."""
@@ -88,10 +75,7 @@ def draw_curves(axes, curves, wilson):
     wilson: draws intervals of our curves as bands."""
     last_frames = max(100, *(curve.rates.index[-1] for curve in curves))
     looks = styles([curve.name for curve in curves if curve.is_ours])
-    named_only = [curve for curve in curves if len(curves) > MOST_CURVES and is_mostly_zero(curve)]
     for curve in curves:
-        if curve in named_only:
-            continue
         colour, marker = looks[curve.name]
         rates = level_line(curve.rates, last_frames)
         look = dict(color=colour, linestyle="-", elinewidth=0.8, zorder=3 if rates is curve.rates else 1)
@@ -103,8 +87,6 @@ def draw_curves(axes, curves, wilson):
             axes.fill_between(rates.index, rates.low, rates.high, color=colour, alpha=0.2, linewidth=0.0, zorder=1)
             errors = None
         axes.errorbar(rates.index, rates.rate, yerr=errors, marker=marker, capsize=2, label=curve.label, **look)
-    for curve in named_only:
-        axes.errorbar([], [], linestyle=" ", label=in_words(curve))
     axes.set_xlim(left=-40)
     axes.xaxis.set_major_locator(MaxNLocator(nbins=6, steps=[1, 2, 5, 10]))
     axes.set_ylim(-0.04, 1.04)
@@ -137,8 +119,7 @@ def draw(options):
 
 FIGURE = Figure(
     "Success rate over the frames learned from. One curve per file of many seeds, with the standard error "
-    "sqrt(p (1 - p) / (n - 1)); a level line where nothing is learned. Of more than five curves those that are 0 at most "
-    "points are not drawn; the legend names them.",
+    "sqrt(p (1 - p) / (n - 1)); a level line where nothing is learned.",
     [argument("curves", metavar="LABEL=FILE.csv", nargs="+", type=source,
               help="a label, and a trials.csv or sweep.csv; the labels %s have the colours of the paper's curves"
               % "; ".join(method[0] for method in METHODS)),
