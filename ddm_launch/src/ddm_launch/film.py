@@ -5,9 +5,8 @@ import math
 import os
 import re
 
-from matplotlib import font_manager
 import numpy as np
-from PIL import Image, ImageDraw, ImageFont
+from PIL import Image
 
 from ddm_launch.command import Failure, number
 from ddm_launch.figure_style import (BLUE, GREY, ORANGE, VERMILLION, Figure, argument, new_screen_figure, save, save_picture,
@@ -19,11 +18,7 @@ from ddm_model.model import load
 
 SUFFIX = ".webp"
 AHEAD_S = 1.0
-PANEL, MARGIN, HEADER, FOOTER = 200, 8, 26, 24  # [pixels]
 LAST_MS = 1500  # duration of the last image of an evaluation [ms]
-# Text below each panel: words, their distance from the panel's left edge [pixels], and their colour.
-TITLES = ([("image", 0, "black")], [("predicted a second ago", 0, "black")],
-          [("features:", 0, "black"), ("now", 66, BLUE), ("plan", 98, ORANGE), ("goal", 132, VERMILLION), ("seen", 166, GREY)])
 EVALUATION = re.compile(r"evaluation_(\d+)$")
 STRIP_IMAGES = 12
 
@@ -78,65 +73,33 @@ def read_clip(evaluation):
     return Clip(title, dt, images, expected, project(features), [project(path) for path in paths], project(seen), goal)
 
 
-class Plane:
-    """The right panel: a square of PANEL pixels with features as points and paths."""
-
-    def __init__(self, clip):
-        points = np.concatenate([clip.support_states, clip.features])
-        self._middle = 0.5 * (points.max(axis=0) + points.min(axis=0))
-        self._scale = 0.44 * PANEL / max(1e-9, 0.5 * float(np.max(np.ptp(points, axis=0))))
-        self._background = Image.new("RGB", (PANEL, PANEL), "white")
-        pen = ImageDraw.Draw(self._background)
-        for point in clip.support_states:
-            self._dot(pen, point, 1, "#cccccc")
-        if clip.goal is not None:
-            self._dot(pen, clip.goal[0], 6, VERMILLION)
-
-    def _at(self, point):
-        x, y = self._scale * (np.asarray(point) - self._middle)
-        return PANEL / 2 + x, PANEL / 2 - y
-
-    def _dot(self, pen, point, radius, colour):
-        x, y = self._at(point)
-        pen.ellipse([x - radius, y - radius, x + radius, y + radius], fill=colour)
-
-    def draw(self, past, path):
-        picture = self._background.copy()
-        pen = ImageDraw.Draw(picture)
-        pen.line([self._at(point) for point in past], fill=GREY, width=1)
-        pen.line([self._at(point) for point in path], fill=ORANGE, width=3)
-        self._dot(pen, path[0], 5, BLUE)
-        return picture
-
-
-def font(size):
-    return ImageFont.truetype(font_manager.findfont("DejaVu Sans"), size)
-
-
-def pictures_of(clip):
-    """Draws an RGB picture for each image of a clip."""
-    plane, pictures = Plane(clip), []
-    for now, image in enumerate(clip.images):
-        picture = Image.new("RGB", (3 * PANEL + 4 * MARGIN, HEADER + PANEL + FOOTER + MARGIN), "white")
-        pen = ImageDraw.Draw(picture)
-        pen.text((MARGIN, 5), "%s:   %4.1f s" % (clip.title, now * clip.dt), fill="black", font=font(14))
-        panels = [as_panel(image), as_panel(clip.expected[now]),
-                  plane.draw(clip.features[max(0, now - 10):now + 1] if now else clip.features[:2], clip.paths[now])]
-        for column, (panel, title) in enumerate(zip(panels, TITLES)):
-            left = MARGIN + column * (PANEL + MARGIN)
-            picture.paste(panel, (left, HEADER))
-            pen.rectangle([left, HEADER, left + PANEL - 1, HEADER + PANEL - 1], outline="#dddddd")
-            for word, shift, colour in title:
-                pen.text((left + shift, HEADER + PANEL + 4), word, fill=colour, font=font(13))
-        pictures.append(picture)
+def pictures_of(clip, count):
+    """Draws RGB pictures for the first `count` images of a clip."""
+    points, pictures = np.concatenate([clip.support_states, clip.features]), []
+    middle, reach = 0.5 * (points.max(axis=0) + points.min(axis=0)), 0.55 * np.ptp(points, axis=0).max() + 1e-9
+    with new_screen_figure(4.3, 1.8) as figure:
+        panels = figure.subplots(1, 3)
+        for now, image in enumerate(clip.images[:count]):
+            for axes in panels:
+                axes.clear()
+                axes.tick_params(left=False, bottom=False, labelleft=False, labelbottom=False)
+            image_axes, expected_axes, plane = panels
+            show_image(image_axes, image)
+            # No prediction exists yet in the first second.
+            show_image(expected_axes, np.full_like(image, 238) if clip.expected[now] is None else clip.expected[now])
+            plane.plot(*clip.support_states.T, ".", color="#cccccc", markersize=2)
+            if clip.goal is not None:
+                plane.plot(*clip.goal.T, "o", color=VERMILLION, markersize=8)
+            plane.plot(*clip.features[max(0, now - 10):now + 1].T, color=GREY, linewidth=1)
+            plane.plot(*clip.paths[now].T, color=ORANGE, linewidth=2)
+            plane.plot(*clip.paths[now][0], "o", color=BLUE, markersize=6)
+            plane.set(xlim=(middle[0] - reach, middle[0] + reach), ylim=(middle[1] - reach, middle[1] + reach), aspect="equal")
+            for axes, title in zip(panels, ("image", "predicted %g s ago" % AHEAD_S, "features")):
+                axes.set_xlabel(title)
+            figure.suptitle("%s:   %4.1f s" % (clip.title, now * clip.dt), x=0.02, horizontalalignment="left")
+            figure.canvas.draw()
+            pictures.append(Image.fromarray(np.asarray(figure.canvas.buffer_rgba())).convert("RGB"))
     return pictures
-
-
-def as_panel(image):
-    """Scales an image to the size of a panel. None gives an empty panel, because no prediction exists yet."""
-    if image is None:
-        return Image.new("RGB", (PANEL, PANEL), "#eeeeee")
-    return Image.fromarray(np.asarray(image, dtype=np.uint8)).resize((PANEL, PANEL), Image.BICUBIC).convert("RGB")
 
 
 def draw_film(options):
@@ -146,7 +109,7 @@ def draw_film(options):
     pictures, durations = [], []
     for evaluation in options.evaluations:
         clip = read_clip(evaluation)
-        shown = pictures_of(clip)[:1 + round(options.seconds / clip.dt)]
+        shown = pictures_of(clip, 1 + round(options.seconds / clip.dt))
         pictures += shown
         durations += [round(1000 * clip.dt)] * (len(shown) - 1) + [LAST_MS]
     save_picture(pictures[0], options.out, "WEBP", save_all=True, append_images=pictures[1:], duration=durations, loop=0,
