@@ -21,7 +21,6 @@ DPI = 200
 ORANGE, SKY, GREEN, YELLOW = "#E69F00", "#56B4E9", "#009E73", "#F0E442"
 BLUE, VERMILLION, PURPLE, BLACK = "#0072B2", "#D55E00", "#CC79A7", "#000000"
 GREY = "#666666"  # for references
-SHADES = ("#b0b0b0", GREY, BLACK)  # for figures that compare settings of one method
 
 # Colour and marker of each method in all figures.
 METHOD_STYLES = {"DDM + MPC": (BLUE, "o"), "efficient": (BLACK, "X"), "oracle": (ORANGE, "P"), "PILCO, state": (VERMILLION, "s"),
