@@ -135,11 +135,11 @@ def test_what_a_film_expects_is_what_the_model_says_a_second_before(run):
     clip = film.read_clip(os.path.join(run, "evaluation_001"))
     assert clip.title == "pendulum, after 60 images (12 s)"
     model = load(os.path.join(run, "trial_001", "model.ddm"))
-    images, torques, motors = draw_evaluation(run, 1)
+    images, torques = draw_evaluation(run, 1)
     # each prediction starts from two images and looks one second ahead
-    assert motors == ["torque_nm"] and clip.expected[:1 + steps] == (1 + steps) * [None]
+    assert list(torques) == ["torque_nm"] and clip.expected[:1 + steps] == (1 + steps) * [None]
     then = now - steps
-    ahead = model.roll_out(model.encode(images[then - 1:then + 1]), torques[then - 1:now])
+    ahead = model.roll_out(model.encode(images[then - 1:then + 1]), torques.values[then - 1:now])
     np.testing.assert_allclose(clip.expected[now], np.clip(255.0 * model.decode(ahead[-1:])[0], 0, 255))
     assert len(clip.paths[then]) == 1 + steps
     assert clip.support_states.shape == (len(model.support_states), 2)

@@ -10,6 +10,7 @@ import pytest
 from processes import call, call_main, find_program, has_mujoco, run_experiment
 from rooms import PACKAGE
 from ddm_launch.command import Failure
+from ddm_launch.plant import Joints
 from ddm_study import collect, diagnosis, pages, results
 from ddm_study.study import main
 from run_files import read_rows
@@ -131,12 +132,12 @@ def test_a_run_has_rows_for_features_predictions_and_goal_and_damage_is_named(tm
 
 
 def test_angles_are_compared_around_the_circle_and_the_goal_counts_where_all_joints_are_near_it():
-    joints = diagnosis.Joints("two_link")
+    joints = Joints("two_link")
     np.testing.assert_allclose(joints.goal, [math.pi, 0.0])
     np.testing.assert_allclose(joints.distances(np.array([[3.0, 0.1]]), np.array([-3.0, 4 * math.pi])),
                                [[2.0 * math.pi - 6.0, 0.1]])
     near, far = math.radians(19.0), math.radians(21.0)
-    assert joints.share_near_goal(np.array([[math.pi - near, near], [-math.pi + near, -near],
+    assert diagnosis.share_near_goal(joints, np.array([[math.pi - near, near], [-math.pi + near, -near],
                                             [math.pi - far, 0.0], [math.pi, far]])) == 0.5
 
 

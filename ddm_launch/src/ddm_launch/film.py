@@ -46,7 +46,7 @@ def read_clip(evaluation):
         raise Failure("a film shows folders RUN/evaluation_NNN, got '%s'" % evaluation)
     run, trial = os.path.dirname(evaluation) or ".", int(found.group(1))
     model, trials = load(os.path.join(run, "trial_%03d" % trial, "model.ddm")), read_trials(os.path.join(run, "trials.csv"))
-    images, torques, _ = draw_evaluation(run, trial)
+    images, torques = draw_evaluation(run, trial)
     if images.shape[1] != model.image_size:
         raise Failure("the plant of %s draws %d pixels and the model sees %d: film runs in which both are equal" % (
             run, images.shape[1], model.image_size))
@@ -58,7 +58,7 @@ def read_clip(evaluation):
         if now < memory - 1:
             paths.append(features[now:now + 1])
             continue
-        ahead = model.roll_out(features[now - n + 1:now + 1], torques[now - memory + 1:now + steps])
+        ahead = model.roll_out(features[now - n + 1:now + 1], torques.values[now - memory + 1:now + steps])
         paths.append(np.concatenate([features[now:now + 1], ahead]))
         if now + steps < len(images):
             expected[now + steps] = np.clip(255.0 * model.decode(ahead[-1:])[0], 0, 255)
@@ -121,7 +121,7 @@ def draw_strip(options):
     trials = read_trials(os.path.join(options.folder, "trials.csv"))
     successes = trials[trials.success > 0]
     trial = options.trial if options.trial is not None else (trials if successes.empty else successes).trial.iloc[-1]
-    images, torques, motors = draw_evaluation(options.folder, trial)
+    images, torques = draw_evaluation(options.folder, trial)
     dt = float(read_setting(options.folder, "plant", "dt", "time step"))
     shown = max(1, min(round(options.seconds / dt), len(images)))
     steps = range(0, shown, math.ceil(shown / STRIP_IMAGES))
@@ -132,8 +132,8 @@ def draw_strip(options):
             show_image(axes, images[step])
             axes.set_title("%.1f s" % (step * dt), fontsize=10)
         axes = figure.add_subplot(grid[1, :])
-        for column, motor in zip(torques[:shown].T, motors):
-            axes.step(dt * np.arange(shown + 1), np.append(column, column[-1]), where="post", label=motor)
+        for motor, column in torques[:shown].items():
+            axes.step(dt * np.arange(shown + 1), np.append(column, column.iloc[-1]), where="post", label=motor)
         for step in steps:
             axes.axvline(step * dt, color=GREY, linewidth=0.6, linestyle=":")
         axes.axhline(0.0, color=GREY, linewidth=0.6)

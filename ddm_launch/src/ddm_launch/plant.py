@@ -1,69 +1,66 @@
-# Gets descriptions and images of a plant from the program simulate.
+# Describes and draws plants, by the program simulate and the Python bindings.
 # SPDX-License-Identifier: BSD-3-Clause
+import math
 import os
 import subprocess
-import tempfile
 
 import numpy as np
 from PIL import Image
 import yaml
 
 from ddm_launch.command import Failure, find_program
-from ddm_launch.run_folder import read_setting
-from ddm_launch.tables import motors_of, read_table
+from ddm_launch.run_folder import read_setting, read_torques
+from ddm_launch.settings import read_yaml
+from ddm_launch.tables import read_table
 
 
-def simulator(plant, *options):
-    """Command line that runs a plant in the program simulate. Raises Failure if simulate is not built."""
-    return [find_program("simulate", "ddm_sim"), "--plant", plant, *options]
+class Joints:
+    """Joints of a plant. facts: what `simulate --describe` prints, as a dictionary. names, columns (in trajectory.csv),
+    units, goal: of each joint."""
 
-
-def simulator_of(folder):
-    """Command line that runs the plant of a run folder with the configuration of that folder."""
-    return simulator(read_setting(folder, "experiment", "plant", "plant"), "--config", os.path.join(folder, "config.yaml"))
-
-
-def describe_plant(command):
-    """Returns the output of `simulate --describe` as a dictionary. command: result of simulator(). Raises Failure with
-    the program's message if it fails."""
-    done = subprocess.run(command + ["--describe"], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                          universal_newlines=True)
-    if done.returncode != 0:
-        raise Failure("'%s' does not describe its plant: %s" % (" ".join(command), done.stderr.strip()))
-    return yaml.safe_load(done.stdout)
-
-
-def draw_images(command, start, motors, torques):
-    """Simulates a plant and returns its grey images  [N + 1 x size x size]. start: initial state. torques: [N x
-    motors].
-
-    Raises Failure with the program's message if it fails.
-    """
-    lines = [",".join(motors)] + [",".join(repr(float(torque)) for torque in row) for row in torques]
-    with tempfile.TemporaryDirectory() as folder:
-        command = command + ["--frames", folder, "--start", ",".join(repr(float(value)) for value in start)]
-        done = subprocess.run(command, input="\n".join(lines) + "\n", stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+    def __init__(self, plant):
+        """Raises Failure with the program's message if it fails."""
+        command = [find_program("simulate", "ddm_sim"), "--plant", plant, "--describe"]
+        done = subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                               universal_newlines=True)
-        names = sorted(name for name in os.listdir(folder) if name.endswith(".png"))
-        if done.returncode != 0 or not names:
-            raise Failure("'%s' drew no image: %s" % (" ".join(command), done.stderr.strip()))
-        images = []
-        for name in names:
-            with Image.open(os.path.join(folder, name)) as image:
-                images.append(np.asarray(image.convert("L")))
-        return np.array(images)
+        if done.returncode != 0:
+            raise Failure("'%s' does not describe its plant: %s" % (" ".join(command), done.stderr.strip()))
+        self.facts = yaml.safe_load(done.stdout)
+        self.columns = [name for name in self.facts["state"] if not name.endswith("_per_s")]
+        self.names, self.units = zip(*(name.rsplit("_", 1) for name in self.columns))
+        self.goal = np.array(self.facts["goal"][:len(self.columns)])
+
+    def distances(self, a, b):
+        """Distance of each joint between the positions a and b, for angles the short way round  [.. x joints]."""
+        difference = np.abs(a - b)
+        circular = np.array([unit == "rad" for unit in self.units])
+        return np.where(circular, np.abs((difference + math.pi) % (2.0 * math.pi) - math.pi), difference)
+
+
+def draw_images(folder, start, torques=(), **episode):
+    """Simulates the plant of a run folder and returns its grey images, without disturbances of the camera
+    [N + 1 x size x size]. start: initial state. torques: [N x motors]. episode: seed and options of reset(), which
+    select the goal of plants that draw it. Raises Failure if the Python bindings are missing."""
+    try:
+        import ddm_sim  # pylint: disable=import-outside-toplevel
+    except ImportError as error:
+        raise Failure("the Python bindings draw the images, and are missing (%s): build with -DDDM_PYTHON=ON" % error) from None
+    plant = read_setting(folder, "experiment", "plant", "plant")
+    env = ddm_sim.make(plant, plant=read_yaml(os.path.join(folder, "config.yaml")).get("plant", {}))
+    seed = episode.pop("seed", 0)
+    images = [env.reset(seed=seed, options=dict(episode, start=start))[0]] + [env.step(torque)[0] for torque in torques]
+    return np.array([np.asarray(Image.fromarray(image).convert("L")) for image in images])
 
 
 def draw_evaluation(run, trial):
-    """Simulates an evaluation of a run folder again. Returns (rendered images, one per torque  [N x size x size];
-    torques [N x motors]; names of the motors' columns). Raises Failure if the camera has lost frames, or if a file
-    cannot be read."""
-    folder, command = os.path.join(run, "evaluation_%03d" % trial), simulator_of(run)
-    plant = describe_plant(command)
-    trajectory = read_table(os.path.join(folder, "trajectory.csv"), "time_s", *plant["state"])
-    if np.any(np.diff(trajectory.time_s) > 1.5 * plant["dt"]):
+    """Simulates an evaluation of a run folder again. Returns (rendered images, one per torque  [N x size x size]; table
+    of torques with a column for each motor). Raises Failure if the camera has lost frames, or if a file cannot be
+    read."""
+    folder = os.path.join(run, "evaluation_%03d" % trial)
+    trajectory = read_table(os.path.join(folder, "trajectory.csv"), "time_s")
+    if np.any(np.diff(trajectory.time_s) > 1.5 * float(read_setting(run, "plant", "dt", "time step"))):
         raise Failure("in %s the camera has lost frames: only evaluations without camera/drop_rate can be drawn" % folder)
-    motors = motors_of(os.path.join(folder, "torques.csv"))
-    torques = read_table(os.path.join(folder, "torques.csv"), *motors)[motors].to_numpy(float)
-    images = draw_images(command, trajectory[plant["state"]].iloc[0], motors, torques)
-    return images[:len(torques)], torques, motors
+    torques = read_torques(folder)
+    images = draw_images(run, trajectory.drop(columns=["step", "time_s"]).iloc[0], torques.values, trial=trial, evaluation=True,
+                         seed=int(read_setting(run, "experiment", "seed", "seed")))
+    return images[:len(torques)], torques

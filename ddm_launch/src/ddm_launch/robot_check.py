@@ -9,6 +9,7 @@ import threading
 
 from ddm_msgs.msg import RunTrialActionGoal, RunTrialActionResult
 from ddm_msgs.srv import Reset
+import numpy as np
 import rospy
 from sensor_msgs.msg import Image, JointState
 from std_msgs.msg import Float64, UInt32
@@ -16,7 +17,7 @@ from std_srvs.srv import SetBool, Trigger
 import yaml
 
 from ddm_launch.command import Failure, find_program
-from ddm_launch.plant import describe_plant, simulator
+from ddm_launch.plant import Joints
 from ddm_model.plain_file import write_file
 
 LIMIT_S = 60.0
@@ -34,14 +35,13 @@ class PlantGoal:
     """Goal of a simulated plant. The error uses the true positions, which robot.launch does not get."""
 
     def __init__(self, plant):
-        about = describe_plant(simulator(plant))
-        self.state, self.unit, self.tolerance = about["goal"], about["error_unit"], about["tolerance"]
-        self._kinds = [joint["kind"] for joint in about["joints"]]
+        self._joints = Joints(plant)
+        self.state, self.unit, self.tolerance = (self._joints.facts[name] for name in ("goal", "error_unit", "tolerance"))
 
     def error(self, positions):
         """Largest error of a joint: angles [deg], lengths in the plant's own unit."""
-        return max(abs(math.degrees(math.remainder(position - goal, 2.0 * math.pi))) if kind == "angle"
-                   else abs(position - goal) for kind, position, goal in zip(self._kinds, positions, self.state))
+        distances = self._joints.distances(np.array(positions), self._joints.goal)
+        return max(math.degrees(distance) if unit == "rad" else distance for unit, distance in zip(self._joints.units, distances))
 
 
 class Load:
@@ -129,8 +129,8 @@ class RobotCheck:
         if goal.evaluation:
             error = max((error for stamp, error in truth.items() if stamps[-SETTLED_STEPS] <= stamp <= stamps[-1]),
                         default=math.inf)
-            self._evaluations.append({"trial": goal.trial, "largest_error": round(error, 4),
-                                      "reached": error <= self._plant_goal.tolerance})
+            self._evaluations.append({"trial": goal.trial, "largest_error": round(float(error), 4),
+                                      "reached": bool(error <= self._plant_goal.tolerance)})
         write_file(os.path.join(self._runs, "robot_check.yaml"), yaml.safe_dump(self._result(), sort_keys=False))
 
     def _result(self):

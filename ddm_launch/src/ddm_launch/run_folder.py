@@ -25,6 +25,13 @@ def read_trajectory(folder):
     return table.assign(time_s=table.time_s - table.time_s[0])
 
 
+def read_torques(folder):
+    """Reads the torques of one episode from FOLDER/torques.csv, with a column for each motor."""
+    path = os.path.join(folder, "torques.csv")
+    motors = list(read_table(path))[1:-1]  # between the columns step and exploratory
+    return read_table(path, *motors)[motors]
+
+
 def is_finished(folder):
     """Whether summary.yaml says that the experiment is finished."""
     return read_yaml(os.path.join(folder, "summary.yaml")).get("finished") is True

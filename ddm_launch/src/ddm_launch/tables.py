@@ -39,11 +39,6 @@ def read_table(path, *numbers, remedy="is its folder a run folder?", once=()):
     return table
 
 
-def motors_of(path):
-    """Names of the motors' columns in a torques.csv, which lie between the columns step and exploratory."""
-    return list(read_table(path))[1:-1]
-
-
 def write_csv(path, header, rows):
     """Writes a CSV file with six significant digits for floats. The file appears when it is complete. Raises OSError if
     the file cannot be written."""

@@ -10,10 +10,10 @@ import rosbag
 from tqdm import tqdm
 
 from ddm_launch.command import Failure
-from ddm_launch.plant import describe_plant, simulator
-from ddm_launch.run_folder import read_setting
+from ddm_launch.plant import Joints
+from ddm_launch.run_folder import read_setting, read_torques
 from ddm_launch.settings import read_yaml
-from ddm_launch.tables import motors_of, read_table, write_csv
+from ddm_launch.tables import read_table, write_csv
 from ddm_model.model import load
 from ddm_study.results import recorded_images
 
@@ -36,38 +36,21 @@ COLUMNS = ["task", "seed", "frames", "part", "steps", "joint", "unit", "median",
 Episode = collections.namedtuple("Episode", "images torques positions")
 
 
-class Joints:
-    """Joints of a plant. names, columns (in trajectory.csv), units: of each joint. goal: position of each joint at the
-    goal."""
-
-    def __init__(self, plant):
-        facts = describe_plant(simulator(plant))
-        self.columns = [name for name in facts["state"] if not name.endswith("_per_s")]
-        self.names, self.units = zip(*(name.rsplit("_", 1) for name in self.columns))
-        self.goal = np.array(facts["goal"][:len(self.columns)])
-        if not set(self.units) <= set(NEAR):
-            raise Failure("plant %s: positions must be in %s, got %s: take a run of another plant" % (
-                plant, " or ".join(NEAR), ", ".join(self.units)))
-
-    def distances(self, a, b):
-        """Distance of each joint between the positions a and b, for angles the short way round  [.. x joints]."""
-        difference = np.abs(a - b)
-        circular = np.array([unit == "rad" for unit in self.units])
-        return np.where(circular, np.abs((difference + math.pi) % (2.0 * math.pi) - math.pi), difference)
-
-    def share_near_goal(self, positions):
-        """Share of positions [N x joints] whose joints are all near the goal."""
-        limits = np.array([NEAR[unit] for unit in self.units])
-        return np.mean(np.all(self.distances(positions, self.goal) < limits, axis=1))
+def share_near_goal(joints, positions):
+    """Share of positions [N x joints] whose joints are all near the goal. Raises Failure if NEAR lacks a unit."""
+    if not set(joints.units) <= set(NEAR):
+        raise Failure("positions must be in %s, got %s: take a run of another plant" % (" or ".join(NEAR), ", ".join(joints.units)))
+    limits = np.array([NEAR[unit] for unit in joints.units])
+    return np.mean(np.all(joints.distances(positions, joints.goal) < limits, axis=1))
 
 
 def read_trial(run, trial, joints):
     """Reads all Episodes of a trial."""
     first, episodes = os.path.join(run, "trial_%03d" % trial), []
     for folder in [first] + sorted(glob.glob(os.path.join(first, "episode_*"))):
-        images, path = recorded_images(os.path.join(folder, "trial.bag")), os.path.join(folder, "torques.csv")
-        tables = ((path, motors_of(path)), (os.path.join(folder, "trajectory.csv"), joints.columns))
-        episodes.append(Episode(images, *(read_table(path, *names)[names].to_numpy(float)[:len(images)] for path, names in tables)))
+        images, trajectory = recorded_images(os.path.join(folder, "trial.bag")), os.path.join(folder, "trajectory.csv")
+        tables = (read_torques(folder), read_table(trajectory, *joints.columns)[joints.columns])
+        episodes.append(Episode(images, *(table.to_numpy(float)[:len(images)] for table in tables)))
     return episodes
 
 
@@ -117,7 +100,7 @@ def diagnose(run):
                          scale * np.median(column), scale * np.quantile(column, 0.9), ""])
     # Plants with goal_site draw another goal in each trial.
     if not read_yaml(os.path.join(run, "config.yaml"))["plant"].get("goal_site"):
-        rows.append([plant, seed, len(positions), "goal", "", "all", "", "", "", joints.share_near_goal(positions)])
+        rows.append([plant, seed, len(positions), "goal", "", "all", "", "", "", share_near_goal(joints, positions)])
     return rows
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from ddm_launch.figure_style import (COLUMN_WIDTH, GREEN, PAGE_WIDTH, SKY, VERMILLION, YELLOW, Figure, add_legend, argument,
                                      new_figure, panel_above_legend, save, show_image)
-from ddm_launch.plant import describe_plant, draw_images, simulator_of
+from ddm_launch.plant import draw_images
 from ddm_model.feature_grid import GRID, FeatureGrid
 from ddm_model.model import load
 from ddm_model.model_data import grey
@@ -49,9 +49,7 @@ def draw_strip(options):
     strip = read_table(options.folder, "strip.csv")
     features = [name for name in strip if name.startswith("z_")]
     states = strip.drop(columns=features + ["steps"])
-    command = simulator_of(options.folder)
-    motors = describe_plant(command)["torque"]
-    images = (("true", [draw_images(command, state, motors, [])[0] for state in states.values]),
+    images = (("true", [draw_images(options.folder, state)[0] for state in states.values]),
               ("predicted", decode(os.path.join(options.folder, "model.ddm"), strip[features].values)))
     with new_figure(PAGE_WIDTH, 1.85) as figure:
         axes = figure.subplots(2, len(strip))

@@ -12,7 +12,7 @@ import ddm_model
 import ddm_mpc
 import ddm_sim
 from ddm_launch.command import BadOptions, Failure, find_program, number, program_parser, run_program
-from ddm_launch.plant import describe_plant, simulator
+from ddm_launch.plant import Joints
 from ddm_launch.settings import differences, read_yaml
 from ddm_model.plain_file import write_file
 
@@ -78,9 +78,9 @@ def position_r2(features, positions):
     return 1.0 - np.sum(errors ** 2) / np.sum((held_out - held_out.mean(axis=0)) ** 2)
 
 
-def positions_of(states, joints):
+def positions_of(states, units):
     """Positions of all joints, with sine and cosine in place of an angle."""
-    columns = [(np.sin(q), np.cos(q)) if joint["kind"] == "angle" else (q,) for joint, q in zip(joints, states.T)]
+    columns = [(np.sin(q), np.cos(q)) if unit == "rad" else (q,) for unit, q in zip(units, states.T)]
     return np.stack([column for of_joint in columns for column in of_joint], axis=1)
 
 
@@ -97,7 +97,7 @@ def make_environment(blocks):
 def measure(blocks, env):
     """Runs the experiment. Returns (model, {file name: table})."""
     names, seed = blocks["experiment"], blocks["experiment"]["seed"]
-    plant = describe_plant(simulator(names["plant"]))
+    joints = Joints(names["plant"])
     controller = ddm_mpc.Controller(None, names["preset"], env, mpc=blocks["mpc"])
     images, torques, states = record(env, controller, seed)
     begin = time.monotonic()
@@ -110,13 +110,13 @@ def measure(blocks, env):
     predictions = pandas.DataFrame([{
         "seed": seed, "steps": k, "num_predictions": len(starts), "rmse": rmse(model.decode(paths[:, k]), held_out[starts + k]),
         "rmse_repeat": rmse(held_out[starts], held_out[starts + k])} for k in range(1, MAX_STEPS + 1)])
-    predictions = predictions.assign(position_r2=position_r2(features, positions_of(states, plant["joints"])),
+    predictions = predictions.assign(position_r2=position_r2(features, positions_of(states, joints.units)),
                                      v_r=model.info["v_r"], v_p=model.info["v_p"], train_s=train_s)
-    all_features = pandas.DataFrame(np.hstack([states, features]), columns=plant["state"] + feature_names)
+    all_features = pandas.DataFrame(np.hstack([states, features]), columns=joints.facts["state"] + feature_names)
     all_features.insert(0, "set", ["training"] * NUM_TRAINING + ["held_out"] * NUM_HELD_OUT)
     middle = len(starts) // 2
     true_states = states[NUM_TRAINING + starts[middle]:][:MAX_STEPS + 1]
-    strip = pandas.DataFrame(np.hstack([true_states, paths[middle]]), columns=plant["state"] + feature_names)
+    strip = pandas.DataFrame(np.hstack([true_states, paths[middle]]), columns=joints.facts["state"] + feature_names)
     return model, {"features.csv": all_features.rename_axis("frame"), "strip.csv": strip.rename_axis("steps"),
                    "predictions.csv": predictions.set_index("seed")}
 
