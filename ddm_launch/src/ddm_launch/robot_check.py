@@ -22,26 +22,14 @@ from ddm_model.plain_file import write_file
 
 LIMIT_S = 60.0
 SETTLED_STEPS = 10  # steps at the end of an evaluation that count for success, as in an experiment
-DEADLINE_MISSES = 0  # largest number of missed deadlines
 LATENCY_P99_MS = 50.0
 
 
-def quantile(values, q):
-    """q-quantile by nearest rank. Infinite without values."""
-    return sorted(values)[max(0, math.ceil(q * len(values)) - 1)] if values else math.inf
-
-
-class PlantGoal:
-    """Goal of a simulated plant. The error uses the true positions, which robot.launch does not get."""
-
-    def __init__(self, plant):
-        self._joints = Joints(plant)
-        self.state, self.unit, self.tolerance = (self._joints.facts[name] for name in ("goal", "error_unit", "tolerance"))
-
-    def error(self, positions):
-        """Largest error of a joint: angles [deg], lengths in the plant's own unit."""
-        distances = self._joints.distances(np.array(positions), self._joints.goal)
-        return max(math.degrees(distance) if unit == "rad" else distance for unit, distance in zip(self._joints.units, distances))
+def largest_error(joints, positions):
+    """Largest error of a joint at the true positions, which robot.launch does not get: angles [deg], lengths in the
+    plant's own unit."""
+    distances = joints.distances(np.array(positions), joints.goal)
+    return max(math.degrees(distance) if unit == "rad" else float(distance) for unit, distance in zip(joints.units, distances))
 
 
 class Load:
@@ -78,7 +66,7 @@ def call(name, kind, *values, **fields):
 
 def show_goal_and_enable(goal):
     """Shows the goal to the robot, then enables the motors, as a user would."""
-    call("plant/reset", Reset, start=goal.state)
+    call("plant/reset", Reset, start=goal)
     for _ in range(3):  # the camera is one image late, and robot_node may not have received one yet
         rospy.wait_for_message("camera/image_raw", Image, LIMIT_S)
     call("take_goal", Trigger)
@@ -88,8 +76,8 @@ def show_goal_and_enable(goal):
 class RobotCheck:
     """Records latencies, deadline misses and errors of evaluations. Writes RUNS/robot_check.yaml after each trial."""
 
-    def __init__(self, goal):
-        self._plant_goal, self._runs = goal, rospy.get_param("~runs")
+    def __init__(self, joints):
+        self._joints, self._runs = joints, rospy.get_param("~runs")
         self._lock = threading.Lock()
         # Goal of the running trial, and error of the plant by time stamp [ns].
         self._goal, self._truth = None, {}
@@ -106,7 +94,7 @@ class RobotCheck:
     def _on_truth(self, joints):
         with self._lock:
             if self._goal is not None:
-                self._truth[joints.header.stamp.to_nsec()] = self._plant_goal.error(joints.position)
+                self._truth[joints.header.stamp.to_nsec()] = largest_error(self._joints, joints.position)
 
     def _on_latency(self, latency):
         self._latencies_ms.append(1e3 * latency.data)
@@ -129,33 +117,33 @@ class RobotCheck:
         if goal.evaluation:
             error = max((error for stamp, error in truth.items() if stamps[-SETTLED_STEPS] <= stamp <= stamps[-1]),
                         default=math.inf)
-            self._evaluations.append({"trial": goal.trial, "largest_error": round(float(error), 4),
-                                      "reached": bool(error <= self._plant_goal.tolerance)})
+            self._evaluations.append({"trial": goal.trial, "largest_error": round(error, 4),
+                                      "reached": error <= self._joints.facts["tolerance"]})
         write_file(os.path.join(self._runs, "robot_check.yaml"), yaml.safe_dump(self._result(), sort_keys=False))
 
     def _result(self):
-        median, p99, largest = (quantile(self._latencies_ms, q) for q in (0.5, 0.99, 1.0))
+        median, p99, largest = map(float, np.quantile(self._latencies_ms or [math.nan], (0.5, 0.99, 1.0)))
         return {"frames": self._frames, "control_minutes": round(self._control_s / 60.0, 2),
                 "deadline_misses": self._misses,
                 "latency_ms": {"median": round(median, 2), "p99": round(p99, 2), "max": round(largest, 2)},
                 "other_trainings": self.load.num_trainings() if self.load else 0,
-                "error_unit": self._plant_goal.unit, "evaluations": self._evaluations,
-                "in_time": self._misses <= DEADLINE_MISSES and p99 < LATENCY_P99_MS,
+                "error_unit": self._joints.facts["error_unit"], "evaluations": self._evaluations,
+                "in_time": self._misses == 0 and p99 < LATENCY_P99_MS,
                 "reached": bool(self._evaluations) and self._evaluations[-1]["reached"]}
 
 
 def main():
     rospy.init_node("robot_check")
     try:
-        goal = PlantGoal(rospy.get_param("~plant"))
+        joints = Joints(rospy.get_param("~plant"))
     except Failure as failure:
         rospy.logfatal("robot_check: %s", failure)
         return 1
-    check = RobotCheck(goal)
+    check = RobotCheck(joints)
     if check.load:
         rospy.on_shutdown(check.load.end)
     try:
-        show_goal_and_enable(goal)
+        show_goal_and_enable(joints.facts["goal"])
     except (rospy.ROSException, rospy.ServiceException) as error:
         rospy.logfatal("robot_check: %s", error)
         return 1
