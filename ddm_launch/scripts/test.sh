@@ -106,12 +106,7 @@ run_tests() {  # BUILD_FOLDER PATTERN
 }
 
 # Prints the build folder for a sanitizer. Argument: address or thread, as for DDM_SANITIZE.
-sanitized_folder() {
-  case $1 in
-    address) echo "$DDM_WS/debug" ;;
-    thread) echo "$DDM_WS/thread" ;;
-  esac
-}
+sanitized_folder() { if [[ $1 == address ]]; then echo "$DDM_WS/debug"; else echo "$DDM_WS/thread"; fi; }
 
 # Builds with a portable instruction set, so that reports are the same on all machines, and with -O1, because
 # unoptimised Eigen needs minutes for seconds of Release.
@@ -210,34 +205,30 @@ fuzz_shortly() {
 # Starts the Debug build in its own session. Its processes run only while other processes leave a core idle.
 start_debug_build() {
   mkdir -p "$DDM_WS/debug"
-  rm -f "$DDM_WS/debug/build.code"
-  : >"$DDM_WS/debug/build.log"  # must exist before finish_debug_build reads it
   export checkout
   setsid bash -c "$(declare -p unity_flags debug_targets && declare -f)"'
     renice -n 19 "$$" >/dev/null || true
     # Linux shares the cores first between sessions, which have their own niceness.
     { echo 19 >"/proc/$$/autogroup"; } 2>/dev/null || true
-    code=0
-    build_sanitized address "${debug_targets[@]}" || code=$?
-    echo "$code" >"$DDM_WS/debug/build.code"' >"$DDM_WS/debug/build.log" 2>&1 </dev/null &
+    build_sanitized address "${debug_targets[@]}"' >"$DDM_WS/debug/build.log" 2>&1 </dev/null &
   debug_build=$!
 }
 
 finish_debug_build() {
-  local code
-  tail --pid="$debug_build" -n 1 -f "$DDM_WS/debug/build.log"
-  code=$(cat "$DDM_WS/debug/build.code")
-  ((code == 0)) || cat "$DDM_WS/debug/build.log"
-  return "$code"
+  local build=$debug_build
+  say "Debug build with AddressSanitizer into $DDM_WS/debug/devel"
+  debug_build=''  # the process id can belong to another process after the build has ended
+  wait "$build" || {
+    cat "$DDM_WS/debug/build.log"
+    fail "the Debug build failed. Remedy: see the first error above."
+  }
 }
 
-durations=()
 phase() {  # TITLE COMMAND...
-  local title=$1 start=$SECONDS code=0
+  local title=$1 code=0
   shift
-  say "$title"
+  say "$title ($SECONDS s after the start)"
   ("$@") || code=$?
-  durations+=("$(printf '%5d s  %s' $((SECONDS - start)) "$title")")
   ((code == 0)) || fail "$title: failed with code $code. Remedy: see the first error above."
 }
 
@@ -256,7 +247,7 @@ run_mode() {
   [[ $mode == part ]] || start_debug_build
   phase "Tests on the Release build" run_tests "$DDM_WS/build" "$pattern"
   [[ $mode == part ]] && return
-  phase "Debug build with AddressSanitizer into $DDM_WS/debug/devel" finish_debug_build
+  finish_debug_build
   phase "gtests and a short loop on the Debug build" run_sanitized address "$debug_tests"
   phase "Short fuzzing" fuzz_shortly
   results+=("$DDM_WS/debug/build")
@@ -283,10 +274,8 @@ main() {
     return
   fi
   run_mode
-  say "Time"
-  printf '%s\n' "${durations[@]}"
   reported=yes
-  say "Result"
+  say "Result ($SECONDS s after the start)"
   /usr/bin/python3 "$checkout/ddm_launch/qa/test_report.py" "${results[@]}"
 }
 
