@@ -7,7 +7,7 @@ import roslib.packages
 
 import pages
 import rooms  # noqa: F401
-from ddm_study.pages import Functions, filled, marked_pages
+from ddm_study.pages import BLOCK, Functions, filled
 from processes import call, free_port, has_mujoco, line_by_line
 
 LIMIT_S = 300.0  # time limit for the commands of a page
@@ -41,13 +41,11 @@ def test_programs_and_launch_files_that_pages_start_are_there():
 
 
 def test_marked_blocks_have_the_numbers_of_the_committed_tables():
-    marked = marked_pages()
+    texts = {page: pages.read(page) for page in pages.page_paths()}
+    marked = {page: text for page, text in texts.items() if BLOCK.search(text)}
     assert len(marked) >= 5
-    for path in marked:
-        with open(path, encoding="utf-8") as stream:
-            text = stream.read()
-        assert filled(text, Functions(os.path.join(rooms.PACKAGE, "results"))) == text, (
-            "%s is out of date: rosrun ddm_launch study pages" % path)
+    functions = Functions(os.path.join(rooms.PACKAGE, "results"))
+    assert not [page for page, text in marked.items() if filled(text, functions) != text], "run: rosrun ddm_launch study pages"
 
 
 def test_a_block_is_filled_and_the_rest_of_the_page_stays(tmp_path):

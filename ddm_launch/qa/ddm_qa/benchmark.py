@@ -10,8 +10,7 @@ from tqdm import tqdm
 import yaml
 
 from ddm_launch.command import Failure, find_program, processor, program_parser, run_program
-from ddm_launch.settings import read_yaml
-from ddm_launch.tables import read_table, write_csv
+from ddm_launch.run_folder import read_table, read_yaml, write_csv
 from ddm_model.plain_file import write_file
 from ddm_qa.processes import Process, free_port, on_this_machine, start_roslaunch
 

@@ -7,7 +7,7 @@ import time
 from tqdm import tqdm
 
 from ddm_launch.command import Failure, number, program_parser, run_program
-from ddm_launch.tables import write_csv
+from ddm_launch.run_folder import write_csv
 from ddm_qa.fault_cases import CASES, FAULTS_OF_ROOT, QUICK
 from ddm_qa.fault_run import FaultBench
 

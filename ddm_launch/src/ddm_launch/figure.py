@@ -1,6 +1,5 @@
 # figure FIGURE: draws a figure from run folders or from tables.
 # SPDX-License-Identifier: BSD-3-Clause
-import importlib
 import sys
 
 from ddm_launch import film, learning_curve, success_rate
@@ -29,9 +28,8 @@ def add_figures(parser, figures):
 
 
 def main(arguments=None):
-    # This subcommand is the node for launch files. The figures need no ROS, so the module is imported here.
-    if arguments is None and sys.argv[1:2] == ["learning_curve_node"]:
-        return importlib.import_module("ddm_launch.learning_curve_node").main()
+    if arguments is None and sys.argv[1:2] == ["learning_curve_node"]:  # for launch files
+        return learning_curve.main_of_node()
     parser = Parser(prog="figure", description="Draws a figure; `figure FIGURE --help` lists its options.")
     add_figures(parser, FIGURES)
     options = parser.parse_args(arguments)

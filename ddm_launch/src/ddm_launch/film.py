@@ -12,8 +12,7 @@ from ddm_launch.command import Failure, number
 from ddm_launch.figure_style import (BLUE, GREY, ORANGE, VERMILLION, Figure, argument, new_screen_figure, save, save_picture,
                                      show_image)
 from ddm_launch.plant import draw_evaluation
-from ddm_launch.run_folder import read_setting, read_trials
-from ddm_launch.settings import read_yaml
+from ddm_launch.run_folder import read_setting, read_trials, read_yaml
 from ddm_model.model import load
 
 SUFFIX = ".webp"

@@ -1,10 +1,19 @@
-# Draws the learning curve of an experiment: the final error after each trial.
+# Draws the learning curve of an experiment: the final error after each trial. The node publishes it as an image.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
+import tempfile
+
+import numpy as np
+import rospy
+from sensor_msgs.msg import Image
+from std_msgs.msg import String
+import yaml
 
 from ddm_launch.command import Failure
-from ddm_launch.figure_style import BLUE, GREY, VERMILLION, Figure, argument, new_screen_figure, save
-from ddm_launch.run_folder import read_setting, read_trials
+from ddm_launch.figure_style import (BLUE, GREY, ORANGE, VERMILLION, Figure, argument, new_figure, new_screen_figure,
+                                     save)
+from ddm_launch.run_folder import LOADER, read_setting, read_table, read_trials
+from ddm_model.plain_file import write_file
 
 
 def draw_one(axes, folder):
@@ -50,6 +59,47 @@ def draw(options):
         axes.set_axisbelow(True)
         axes.legend(loc="best")
         save(figure, options.out)
+
+
+def draw_model_errors(axes, path):
+    """Draws V_R and V_P per frame, for models that have them."""
+    table = read_table(path, "frames", "v_r", "v_p")
+    for name, label, colour in (("v_r", "reconstruction V_R", GREY), ("v_p", "prediction V_P", ORANGE)):
+        known = table[table[name] > 0.0]
+        axes.semilogy(known.frames, known[name] / known.frames, color=colour, marker=".", label=label)
+    axes.legend(loc="upper right")
+
+
+def picture(text):
+    """Draws the image for a message on the topic `trials`: 640 x 480 pixels, RGB. The curves start at the left edge and
+    grow to the right."""
+    trials = yaml.load(text, Loader=LOADER)
+    with tempfile.TemporaryDirectory() as folder, new_figure(6.4, 4.8, dpi=100) as figure:
+        table = os.path.join(folder, "trials.csv")
+        write_file(os.path.join(folder, "config.yaml"), text)
+        write_file(table, trials["trials_csv"])
+        above, below = figure.subplots(2, 1, sharex=True, gridspec_kw={"height_ratios": (3, 2)})
+        if trials["trials_csv"].count("\n") > 1:
+            draw_model_errors(below, table)
+            try:
+                draw_one(above, folder)
+            except Failure:
+                above.set_title("success is not known: there is no ground truth")
+        below.set_xlim(0, max(trials["frames"], below.dataLim.x1))  # includes the frames of start/bags
+        below.set_xlabel("frames learned from [image-torque pairs]")
+        below.set_ylabel("errors per frame [grey²]")
+        figure.canvas.draw()
+        pixels = np.asarray(figure.canvas.buffer_rgba())[:, :, :3]
+    height, width = pixels.shape[:2]
+    return Image(height=height, width=width, encoding="rgb8", step=3 * width, data=pixels.tobytes())
+
+
+def main_of_node():
+    rospy.init_node("learning_curve_node")
+    publisher = rospy.Publisher("learning_curve_image", Image, queue_size=1, latch=True)
+    rospy.Subscriber("trials", String, lambda trials: publisher.publish(picture(trials.data)), queue_size=1)
+    rospy.spin()
+    return 0
 
 
 FIGURE = Figure("The final error after each trial of a run. Where none is known, as on a robot, the successes.",

@@ -9,9 +9,7 @@ from PIL import Image
 import yaml
 
 from ddm_launch.command import Failure, find_program
-from ddm_launch.run_folder import read_setting, read_torques
-from ddm_launch.settings import read_yaml
-from ddm_launch.tables import read_table
+from ddm_launch.run_folder import read_setting, read_table, read_torques, read_yaml
 
 
 class Joints:

@@ -12,8 +12,7 @@ from ddm_launch.averages import success_rates
 from ddm_launch.command import Failure
 from ddm_launch.figure_style import (BLACK, COLUMN_WIDTH, GREY, METHOD_STYLES, SKY, YELLOW, Figure, add_legend, argument,
                                      new_figure, panel_above_legend, save)
-from ddm_launch.run_folder import read_trials
-from ddm_launch.tables import read_table
+from ddm_launch.run_folder import read_table, read_trials
 
 # The paper's methods: name, column of the published rate, column of its standard error (None: not published). Our curve
 # of a method has the same colour as the published curve.

@@ -11,7 +11,7 @@ import pandas
 import yaml
 
 from ddm_launch.command import BadOptions, Failure, find_program
-from ddm_launch.settings import differences, read_yaml
+from ddm_launch.run_folder import differences, read_yaml
 from ddm_model.plain_file import remove_unfinished, write_file
 
 # Programs that a sweep can run, and the table that each program writes into its folder.

@@ -7,8 +7,7 @@ import re
 import pandas
 
 from ddm_launch.command import Failure
-from ddm_launch.run_folder import read_trajectory, read_trials
-from ddm_launch.settings import read_yaml
+from ddm_launch.run_folder import read_trajectory, read_trials, read_yaml
 from ddm_model.plain_file import write_file
 from ddm_study.results import read_table
 

@@ -11,9 +11,7 @@ from tqdm import tqdm
 
 from ddm_launch.command import Failure
 from ddm_launch.plant import Joints
-from ddm_launch.run_folder import read_setting, read_torques
-from ddm_launch.settings import read_yaml
-from ddm_launch.tables import read_table, write_csv
+from ddm_launch.run_folder import read_setting, read_table, read_torques, read_yaml, write_csv
 from ddm_model.model import load
 from ddm_study.results import recorded_images
 

@@ -53,8 +53,7 @@ class Functions:
         self._folder = folder
 
     def path(self, name):
-        """Path of a file in the folder of results. The published results exist only among the committed ones."""
-        return os.path.join(package_path("results") if name.startswith("published/") else self._folder, name)
+        return os.path.join(self._folder, name)
 
     def table(self, name):
         return results.read_table(self.path(name))
@@ -145,43 +144,24 @@ class Functions:
         return dict(public, mean_and_error=mean_and_error, plus_minus=plus_minus)
 
 
-def filled(text, functions, is_partial=False):
-    """Fills the blocks of a page and returns the text. is_partial: a missing table is reported in its block and not
-    raised."""
+def filled(text, functions):
+    """Fills the blocks of a page and returns the text."""
     def fill(match):
-        try:
-            content = eval('f"""%s"""' % match.group(2), functions.names())
-        except Failure as error:
-            if not is_partial:
-                raise
-            content = "(%s)" % error
-        return match.group(1) + content + match.group(3)
+        return match.group(1) + eval('f"""%s"""' % match.group(2), functions.names()) + match.group(3)
     return BLOCK.sub(fill, text)
 
 
-def marked_pages():
-    """Paths of all pages with a marked block."""
-    checkout = os.path.join(package_path(), "..")
-    found = []
-    for path in sorted(glob.glob(os.path.join(checkout, "**", "*.md"), recursive=True)):
-        with open(path, encoding="utf-8") as stream:
-            if BLOCK.search(stream.read()):
-                found.append(path)
-    return found
-
-
 def work(options):
-    for path in options.pages or marked_pages():
+    pages = options.pages or glob.glob(os.path.join(package_path(), "..", "**", "*.md"), recursive=True)
+    for path in sorted(pages):
         with open(path, encoding="utf-8") as stream:
             text = stream.read()
         try:
-            new = filled(text, Functions(options.results or package_path("results")), bool(options.results))
+            new = filled(text, Functions(package_path("results")))
         except Exception as error:  # expressions can raise anything
             raise Failure("%s: a block cannot be filled (%s: %s): correct its expression" % (
                 path, type(error).__name__, error)) from error
-        if options.results:
-            print(new)
-        elif new != text:
+        if new != text:
             with open(path, "w", encoding="utf-8") as stream:
                 stream.write(new)
             print("wrote %s" % path)
@@ -189,5 +169,3 @@ def work(options):
 
 def add_arguments(parser):
     parser.add_argument("pages", nargs="*", metavar="PAGE.md", help="default: all pages with a marked block")
-    parser.add_argument("--results", metavar="DIR", help="print the pages with the numbers of these results, such as "
-                        "those of `study reproduce`, and leave them as they are")

@@ -13,7 +13,7 @@ import ddm_mpc
 import ddm_sim
 from ddm_launch.command import BadOptions, Failure, find_program, number, program_parser, run_program
 from ddm_launch.plant import Joints
-from ddm_launch.settings import differences, read_yaml
+from ddm_launch.run_folder import differences, read_yaml
 from ddm_model.plain_file import write_file
 
 ABOUT = """\

@@ -8,7 +8,7 @@ import rosbag
 
 import numpy as np
 
-from ddm_launch import tables
+from ddm_launch import run_folder
 from ddm_launch.averages import holm, mean_and_error, sign_test
 from ddm_launch.command import Failure
 
@@ -24,7 +24,7 @@ PHYSICS_FRAMES = 5
 
 def read_table(*names):
     """Reads a CSV file. Raises Failure with the name of the file if it cannot be read."""
-    return tables.read_table(os.path.join(*names), remedy="make it by `study reproduce`")
+    return run_folder.read_table(os.path.join(*names), remedy="make it by `study reproduce`")
 
 
 def recorded_images(bag):
