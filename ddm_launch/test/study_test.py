@@ -127,7 +127,7 @@ def test_a_run_has_rows_for_features_predictions_and_goal_and_damage_is_named(tm
     assert float(rows[0]["median"]) < 45.0  # features without information would have a median of 90
     bag = run / "trial_001" / "trial.bag"
     os.truncate(str(bag), os.path.getsize(str(bag)) // 2)
-    code, output = call_main(main, ["diagnose", str(run), "--out", table])
+    code, output = call([STUDY, "diagnose", str(run), "--out", table])
     assert code == 1 and str(bag) in output
 
 

@@ -6,14 +6,13 @@ import math
 import os
 
 import numpy as np
-import rosbag
 from tqdm import tqdm
 
 from ddm_launch.command import Failure
 from ddm_launch.plant import Joints
-from ddm_launch.run_folder import read_setting, read_table, read_torques, read_yaml, write_csv
+from ddm_launch.run_folder import read_setting, read_table, read_yaml, write_csv
 from ddm_model.model import load
-from ddm_study.results import recorded_images
+from ddm_model.model_data import ModelDataError, read_bags
 
 ABOUT = """\
 Shows why a task is not learned. For each run folder it takes the last model but one and the images of the next trial,
@@ -42,14 +41,14 @@ def share_near_goal(joints, positions):
     return np.mean(np.all(joints.distances(positions, joints.goal) < limits, axis=1))
 
 
-def read_trial(run, trial, joints):
+def read_trial(run, trial, joints, image_size):
     """Reads all Episodes of a trial."""
-    first, episodes = os.path.join(run, "trial_%03d" % trial), []
-    for folder in [first] + sorted(glob.glob(os.path.join(first, "episode_*"))):
-        images, trajectory = recorded_images(os.path.join(folder, "trial.bag")), os.path.join(folder, "trajectory.csv")
-        tables = (read_torques(folder), read_table(trajectory, *joints.columns)[joints.columns])
-        episodes.append(Episode(images, *(table.to_numpy(float)[:len(images)] for table in tables)))
-    return episodes
+    first = os.path.join(run, "trial_%03d" % trial)
+    folders = [first] + sorted(glob.glob(os.path.join(first, "episode_*")))
+    bags = read_bags([os.path.join(folder, "trial.bag") for folder in folders], image_size)
+    tables = [read_table(os.path.join(folder, "trajectory.csv"), *joints.columns)[joints.columns] for folder in folders]
+    return [Episode(bag["images"], bag["torques"], table.to_numpy(float)[:len(bag["images"])])
+            for bag, table in zip(bags, tables)]
 
 
 def nearest_positions(learned, positions, features):
@@ -80,8 +79,8 @@ def diagnose(run):
         raise Failure("%s must have two trials at least, got %d: the second is what the first model has not learned from"
                       % (run, last + 1))
     model = load(os.path.join(run, "trial_%03d" % (last - 1), "model.ddm"))
-    episodes = [episode for trial in range(last) for episode in read_trial(run, trial, joints)]
-    held_out = read_trial(run, last, joints)
+    episodes = [episode for trial in range(last) for episode in read_trial(run, trial, joints, model.image_size)]
+    held_out = read_trial(run, last, joints, model.image_size)
     positions = np.concatenate([episode.positions for episode in episodes])
     learned = np.concatenate([model.encode(episode.images) for episode in episodes])
     rows = []
@@ -107,7 +106,7 @@ def work(options):
     for run in tqdm(options.runs, unit="run", disable=None):
         try:
             rows += diagnose(run)
-        except (OSError, rosbag.ROSBagException) as error:
+        except (OSError, ModelDataError) as error:
             raise Failure("%s: %s" % (run, error))
     write_csv(options.out, COLUMNS, rows)
     print("wrote %s" % options.out)

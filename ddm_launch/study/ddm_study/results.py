@@ -4,9 +4,6 @@ import glob
 import os
 
 import pandas
-import rosbag
-
-import numpy as np
 
 from ddm_launch import run_folder
 from ddm_launch.averages import holm, mean_and_error, sign_test
@@ -25,18 +22,6 @@ PHYSICS_FRAMES = 5
 def read_table(*names):
     """Reads a CSV file. Raises Failure with the name of the file if it cannot be read."""
     return run_folder.read_table(os.path.join(*names), remedy="make it by `study reproduce`")
-
-
-def recorded_images(bag):
-    """Reads the grey images of a recorded trial, as the learner got them  [N x size x size]. Raises Failure with the
-    name of the bag if it cannot be read."""
-    try:
-        with rosbag.Bag(bag) as recording:
-            return np.array([np.frombuffer(message.data, np.uint8).reshape(message.height, message.width)
-                             for topic, message, _ in recording.read_messages() if topic.endswith("image_raw")])
-    # rosbag raises a dozen types of exceptions for damaged bags, some of them from Python's library.
-    except Exception as error:
-        raise Failure("%s cannot be read (%s): `rosbag check` tells whether it is damaged" % (bag, error)) from error
 
 
 def variants(folder):
