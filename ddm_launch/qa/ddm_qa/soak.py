@@ -8,12 +8,12 @@ import socket
 import time
 
 import pandas
-import rosbag
 import rosgraph
 from tqdm import tqdm
 
 from ddm_launch.command import Failure, number, program_parser, run_program
 from ddm_launch.run_folder import is_finished, num_finished, read_setting, read_trajectory
+from ddm_model.model_data import read_bags
 from ddm_model.plain_file import write_file
 from ddm_qa.processes import free_port, pid_of, start_roslaunch
 
@@ -26,6 +26,7 @@ model: {pca_dim: 5, encoder_widths: [], predictor_widths: []}
 trial: {num_steps: %d}
 """
 GROWTH = 0.05  # largest growth of resident memory after the first tenth of the trials (trial 30 of 300)
+IMAGE_SIZE = 5  # smallest images that are read from bags, whose content does not matter [pixels]
 IMAGES = 2.0  # largest memory of model_node per frame [images]: one image, and other data of the frame
 
 # trials, seconds: the run ends after this number of trials after the random one, or after this time since the first
@@ -68,15 +69,6 @@ def judge(soak, samples, frames):
                             columns=["run", "target", "measured", "passed"])
 
 
-def answered_times(bag_path):
-    """Time stamps of the images in a bag that have a torque [s]."""
-    images, torques = set(), set()
-    with rosbag.Bag(bag_path) as bag:
-        for topic, message, _ in bag.read_messages(["camera/image_raw", "torque"]):
-            (torques if topic == "torque" else images).add(message.header.stamp.to_nsec())
-    return [1e-9 * stamp for stamp in sorted(images & torques)]
-
-
 def count_frames(run, folder, num_trials):
     """Counts the frames of the first trials of a run folder and of their evaluations, which are not recorded. Returns
     the rows of frames.csv.
@@ -87,8 +79,9 @@ def count_frames(run, folder, num_trials):
     dt = float(read_setting(folder, "plant", "dt", "time between two images"))
     num_steps, rows = int(read_setting(folder, "trial", "num_steps", "frames of a trial")), []
     for trial in range(num_trials):
-        for part, times in (("trial", answered_times(os.path.join(folder, "trial_%03d" % trial, "trial.bag"))),
-                            ("evaluation", read_trajectory(os.path.join(folder, "evaluation_%03d" % trial)).time_s.tolist())):
+        bag, = read_bags([os.path.join(folder, "trial_%03d" % trial, "trial.bag")], IMAGE_SIZE)
+        evaluation = read_trajectory(os.path.join(folder, "evaluation_%03d" % trial))
+        for part, times in (("trial", bag["times"].tolist()), ("evaluation", evaluation.time_s.tolist())):
             due = max(num_steps, int(round((times[-1] - times[0]) / dt)) + 1 if len(times) else 0)
             rows.append((run, trial, part, due, len(times), due - len(times)))
     return pandas.DataFrame(rows, columns=["run", "trial", "part", "due", "answered", "lost"])
