@@ -60,18 +60,13 @@ def new_screen_figure(width, height):
     return new_figure(width, height, settings={}, dpi=150)
 
 
-def require_png(out):
-    """Raises Failure if the file name does not end in .png."""
-    if not out.lower().endswith(".png"):
-        raise Failure("the picture must be a .png, got '%s': give --out another name" % out)
-
-
 def save(figure, out):
     """Writes a PNG without time stamp and program name, so that equal figures give equal bytes.
 
     Raises Failure if the file name does not end in .png, OSError if the file cannot be written.
     """
-    require_png(out)
+    if not out.lower().endswith(".png"):
+        raise Failure("the picture must be a .png, got '%s': give --out another name" % out)
     figure.canvas.draw()
     picture = Image.fromarray(np.asarray(figure.canvas.buffer_rgba())).convert("RGB")
     picture = picture.quantize(256)  # halves the file; the colours of smoothed edges change by an invisible amount

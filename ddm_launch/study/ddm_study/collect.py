@@ -39,12 +39,10 @@ def policies(runs):
     for seed, folder in runs.items():
         for trial in read_trials(os.path.join(folder, "trials.csv")).itertuples():
             path = os.path.join(folder, "trial_%03d" % trial.trial, "pilco.yaml")
-            search = read_yaml(path)
-            if not set(SEARCH_KEYS) <= set(search):
-                raise Failure("%s must have the keys %s: collect policies of a sweep of PILCO" % (
-                    path, ", ".join(SEARCH_KEYS)))
-            rows.append([seed, trial.trial, trial.frames] + [search[key] for key in SEARCH_KEYS])
-    return pandas.DataFrame(rows, columns=["seed", "trial", "frames"] + SEARCH_KEYS)
+            rows.append(dict(read_yaml(path), seed=seed, trial=trial.trial, frames=trial.frames))
+            if not set(SEARCH_KEYS) <= set(rows[-1]):
+                raise Failure("%s must have the keys %s: collect policies of a sweep of PILCO" % (path, ", ".join(SEARCH_KEYS)))
+    return pandas.DataFrame(rows)[["seed", "trial", "frames"] + SEARCH_KEYS]
 
 
 def last_models(runs):

@@ -18,10 +18,10 @@ MAY_DIFFER = ["version", "train_s", "wall_s", "plan_ms_median", "plan_ms_p99", "
 
 def compare(committed, again):
     """Compares a reproduced table of some seeds with the committed one. Returns (number of rows, first difference or
-    None)."""
+    ""). There are no rows if the table has no results of seeds."""
     old, new = (read_table(path).drop(columns=MAY_DIFFER, errors="ignore") for path in (committed, again))
-    if "seed" not in new or len(new.columns) < 2:  # the table has no results of seeds
-        return 0, None
+    if "seed" not in new or len(new.columns) < 2:
+        return 0, ""
     if set(old.columns) != set(new.columns):
         return len(new), "only one of the two files has the columns %s" % ", ".join(sorted(set(old.columns) ^ set(new.columns)))
     old, new = old[old.seed.isin(new.seed)].reset_index(drop=True), new[old.columns]
@@ -31,23 +31,23 @@ def compare(committed, again):
     for row, column in zip(*differs.values.nonzero()):
         return len(new), "row %d, seed %d: %s is %s in the committed file, and %s" % (
             row + 1, new.seed[row], old.columns[column], old.iloc[row, column], new.iloc[row, column])
-    return len(new), None
+    return len(new), ""
 
 
 def work(options):
-    paths = sorted(glob.glob(os.path.join(options.again, "**", "*.csv"), recursive=True))
-    names = [os.path.relpath(path, options.again) for path in paths]
-    found = {name: compare(os.path.join(options.committed, name), os.path.join(options.again, name)) for name in names
-             if os.path.isfile(os.path.join(options.committed, name))}
-    found = {name: result for name, result in found.items() if result[0] > 0}
-    for name, (count, difference) in found.items():
-        print("%-7s  %s: %s" % ("differs" if difference else "equal", name, difference or "%d rows" % count))
-    if not found:
+    num_tables = num_different = 0
+    for again in sorted(glob.glob(os.path.join(options.again, "**", "*.csv"), recursive=True)):
+        name = os.path.relpath(again, options.again)
+        committed = os.path.join(options.committed, name)
+        count, difference = compare(committed, again) if os.path.isfile(committed) else (0, "")
+        if count > 0:
+            print("%-7s  %s: %s" % ("differs" if difference else "equal", name, difference or "%d rows" % count))
+            num_tables, num_different = num_tables + 1, num_different + bool(difference)
+    if num_tables == 0:
         raise Failure("%s has no table of seeds that %s has too: make it again with the same command" % (
             options.again, options.committed))
-    num_different = sum(difference is not None for _, difference in found.values())
-    if num_different:
-        raise Failure("%d of %d tables differ: see above" % (num_different, len(found)))
+    if num_different > 0:
+        raise Failure("%d of %d tables differ: see above" % (num_different, num_tables))
 
 
 def add_arguments(parser):

@@ -23,11 +23,6 @@ DRAWN = ("MR.Q", "DreamerV3", "DrQ-v2", "Dreamer v1")
 MARKER_DISTANCE = 0.12  # distance between markers along a curve, in diagonals of the axes
 
 
-def half_turns_text(count):
-    """Label for an angle of `count` half turns."""
-    return {0: "0", 1: "$\\pi$", -1: "$-\\pi$"}.get(count, "$%d\\pi$" % count)
-
-
 def draw_trajectories(options):
     """Draws a panel for each number of frames, all with the same axes, and a legend below."""
     table = read_table(options.file)
@@ -37,6 +32,7 @@ def draw_trajectories(options):
     num_rows = math.ceil(len(panels) / num_columns)
     reach = min(MOST_TURNS, max(1.3, 1.05 * table.turns.abs().max()))
     ticks = [turns for turns in range(-3, 4) if abs(turns) < reach]
+    labels = ["0" if turns == 0 else ("$%d\\pi$" % turns).replace("1", "") for turns in ticks]
     with new_figure(PAGE_WIDTH, 1.3 * num_rows + 0.6) as figure:
         grid = figure.add_gridspec(num_rows + 1, num_columns, height_ratios=[1.0] * num_rows + [0.001])
         for k, (frames, of_frames) in enumerate(panels):
@@ -49,11 +45,8 @@ def draw_trajectories(options):
                     axes.plot(run.time_s, run.turns, color=colour, linestyle=style, linewidth=0.7, alpha=0.8)
             by_seed = of_frames.groupby("seed").success.first()
             axes.set_title("%d frames: %d of %d" % (frames, by_seed.sum(), len(by_seed)), pad=3)
-            axes.set_xlim(0.0, table.time_s.max() + table.time_s[1] - table.time_s[0])
-            axes.set_ylim(-reach, reach)
-            axes.set_yticks(ticks)
-            axes.set_yticklabels([] if k % num_columns else [half_turns_text(turns) for turns in ticks])
-            axes.set_ylabel("" if k % num_columns else "angle [rad]")
+            axes.set(xlim=(0.0, table.time_s.max() + table.time_s[1] - table.time_s[0]), ylim=(-reach, reach), yticks=ticks,
+                     yticklabels=[] if k % num_columns else labels, ylabel="" if k % num_columns else "angle [rad]")
             is_last = k + num_columns >= len(panels)
             axes.tick_params(labelbottom=is_last)
             axes.set_xlabel("time [s]" if is_last else "")
