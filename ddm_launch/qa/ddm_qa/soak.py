@@ -76,8 +76,8 @@ def count_frames(run, folder, num_trials):
     A frame is lost if the camera did not publish its image, if the image did not arrive, or if no torque answered it.
     Each loss leaves a gap between the times of the answered frames, which are otherwise dt apart.
     """
-    dt = float(read_setting(folder, "plant", "dt", "time between two images"))
-    num_steps, rows = int(read_setting(folder, "trial", "num_steps", "frames of a trial")), []
+    dt = float(read_setting(folder, "plant/dt"))
+    num_steps, rows = int(read_setting(folder, "trial/num_steps")), []
     for trial in range(num_trials):
         bag, = read_bags([os.path.join(folder, "trial_%03d" % trial, "trial.bag")], IMAGE_SIZE)
         evaluation = read_trajectory(os.path.join(folder, "evaluation_%03d" % trial))

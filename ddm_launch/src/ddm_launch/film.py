@@ -49,7 +49,7 @@ def read_clip(evaluation):
     if images.shape[1] != model.image_size:
         raise Failure("the plant of %s draws %d pixels and the model sees %d: film runs in which both are equal" % (
             run, images.shape[1], model.image_size))
-    dt = float(read_setting(run, "plant", "dt", "time step"))
+    dt = float(read_setting(run, "plant/dt"))
     steps, n = max(1, round(AHEAD_S / dt)), model.options["order"]
     memory = n + model.options["delay"]
     features, paths, expected = model.encode(images), [], [None] * len(images)
@@ -66,7 +66,7 @@ def read_clip(evaluation):
     # If the goal is drawn in each trial, the goal in the model belongs to another trial.
     drawn = (read_yaml(os.path.join(run, "config.yaml")).get("plant") or {}).get("goal_site")
     goal = None if drawn or model.goal_feature is None else project(model.goal_feature[None])
-    title = re.sub(r".*/(.*)\.yaml$", r"\1", read_setting(run, "experiment", "plant", "plant"))
+    title = re.sub(r".*/(.*)\.yaml$", r"\1", read_setting(run, "experiment/plant"))
     for count in trials[trials.trial == trial].frames:
         title += ", after {:,} images ({:g} s)".format(count, count * dt)
     return Clip(title, dt, images, expected, project(features), [project(path) for path in paths], project(seen), goal)
@@ -121,7 +121,7 @@ def draw_strip(options):
     successes = trials[trials.success > 0]
     trial = options.trial if options.trial is not None else (trials if successes.empty else successes).trial.iloc[-1]
     images, torques = draw_evaluation(options.folder, trial)
-    dt = float(read_setting(options.folder, "plant", "dt", "time step"))
+    dt = float(read_setting(options.folder, "plant/dt"))
     shown = max(1, min(round(options.seconds / dt), len(images)))
     steps = range(0, shown, math.ceil(shown / STRIP_IMAGES))
     with new_screen_figure(len(steps) * 1.0 + 0.6, 3.0) as figure:

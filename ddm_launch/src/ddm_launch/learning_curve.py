@@ -23,8 +23,8 @@ def draw_one(axes, folder):
     Raises Failure if neither final errors nor successes are known.
     """
     trials = read_trials(os.path.join(folder, "trials.csv"))
-    unit = read_setting(folder, "goal", "error_unit", "unit of the final error")
-    tolerance = float(read_setting(folder, "goal", "tolerance", "largest error that counts as success"))
+    unit = read_setting(folder, "goal/error_unit")
+    tolerance = float(read_setting(folder, "goal/tolerance"))
     has_errors = trials.final_error.notna().any()
     trials = trials.assign(height=trials.final_error if has_errors else trials.success).dropna(subset=["height"])
     if trials.empty:

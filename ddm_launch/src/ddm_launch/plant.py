@@ -43,7 +43,7 @@ def draw_images(folder, start, torques=(), **episode):
         import ddm_sim  # pylint: disable=import-outside-toplevel
     except ImportError as error:
         raise Failure("the Python bindings draw the images, and are missing (%s): build with -DDDM_PYTHON=ON" % error) from None
-    plant = read_setting(folder, "experiment", "plant", "plant")
+    plant = read_setting(folder, "experiment/plant")
     env = ddm_sim.make(plant, plant=read_yaml(os.path.join(folder, "config.yaml")).get("plant", {}))
     seed = episode.pop("seed", 0)
     images = [env.reset(seed=seed, options=dict(episode, start=start))[0]] + [env.step(torque)[0] for torque in torques]
@@ -56,9 +56,9 @@ def draw_evaluation(run, trial):
     read."""
     folder = os.path.join(run, "evaluation_%03d" % trial)
     trajectory = read_table(os.path.join(folder, "trajectory.csv"), "time_s")
-    if np.any(np.diff(trajectory.time_s) > 1.5 * float(read_setting(run, "plant", "dt", "time step"))):
+    if np.any(np.diff(trajectory.time_s) > 1.5 * float(read_setting(run, "plant/dt"))):
         raise Failure("in %s the camera has lost frames: only evaluations without camera/drop_rate can be drawn" % folder)
     torques = read_torques(folder)
     images = draw_images(run, trajectory.drop(columns=["step", "time_s"]).iloc[0], torques.values, trial=trial, evaluation=True,
-                         seed=int(read_setting(run, "experiment", "seed", "seed")))
+                         seed=int(read_setting(run, "experiment/seed")))
     return images[:len(torques)], torques

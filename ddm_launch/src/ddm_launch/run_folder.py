@@ -116,14 +116,10 @@ def num_finished(folder):
         return 0
 
 
-def read_setting(folder, block, key, meaning):
-    """Returns one value of FOLDER/config.yaml as text. meaning: description of the value for the error message. Raises
-    Failure if the file or the value is missing."""
+def read_setting(folder, key):
+    """Returns one value of FOLDER/config.yaml. key: block/key. Raises Failure if the file or the value is missing."""
     path = os.path.join(folder, "config.yaml")
-    try:
-        with open(path) as stream:
-            return str(yaml.load(stream, Loader=LOADER)[block][key])
-    except (OSError, UnicodeDecodeError) as error:
-        raise Failure("%s cannot be read (%s): is its folder a run folder?" % (path, getattr(error, "strerror", None) or error))
-    except (yaml.YAMLError, KeyError, TypeError):
-        raise Failure("%s does not name the %s (key %s/%s)" % (path, meaning, block, key))
+    value = flat(read_yaml(path)).get(key)
+    if value is None:
+        raise Failure("%s must give a value of %s: is its folder a run folder?" % (path, key))
+    return value

@@ -72,7 +72,7 @@ def predicted(model, episode, steps):
 
 def diagnose(run):
     """Diagnoses a finished run folder. Returns rows of COLUMNS. Raises Failure if the run has fewer than two models."""
-    plant, seed = (read_setting(run, "experiment", name, name) for name in ("plant", "seed"))
+    plant, seed = (read_setting(run, "experiment/" + name) for name in ("plant", "seed"))
     joints = Joints(plant)
     last = len(glob.glob(os.path.join(run, "trial_*", "model.ddm"))) - 1
     if last < 1:
