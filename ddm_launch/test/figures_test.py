@@ -49,12 +49,10 @@ def test_each_figure_is_drawn_from_committed_results(main, words, tmp_path, monk
 
 
 @pytest.mark.parametrize("words, parts", [
-    (["success_rate", "x=SWEEP", "x=SWEEP"], ["label of its own", "x; x"]),
-    (["success_rate", "DDM=SWEEP", *("%d=SWEEP" % k for k in range(5))], ["at most 4 labels"]),
     (["success_rate", "x=missing.csv"], ["missing.csv cannot be read", "sweep.csv"]),
     (["success_rate", "x=/dev/null"], ["/dev/null cannot be read"]),
     (["success_rate", "x=SWEEP", "--published", "no.csv"], ["no.csv", "results/published/success_rate.csv"]),
-        (["film_strip", "."], ["trials.csv cannot be read"])])
+    (["film_strip", "."], ["trials.csv cannot be read"])])
 def test_what_cannot_be_drawn_is_refused_and_nothing_is_written(words, parts, sweep, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     code, output = call_main(figure.main, [word.replace("SWEEP", sweep) for word in words] + ["--out", "figure.png"])

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import argparse
 import collections
+import itertools
 import math
 
 from matplotlib.colors import to_rgb
@@ -54,15 +55,6 @@ def read_published(path):
     return curves
 
 
-def styles(names):
-    """Returns {name: (colour, marker)} of our curves. Raises Failure if the curves could not be distinguished."""
-    others = [name for name in names if name not in METHOD_STYLES]
-    if len(others) > len(OTHERS) or len(set(names)) < len(names):
-        raise Failure("each curve must have a label of its own, and at most %d labels besides %s can be distinguished, got %s: "
-                      "draw two figures" % (len(OTHERS), "; ".join(METHOD_STYLES), "; ".join(names)))
-    return dict(METHOD_STYLES, **dict(zip(others, OTHERS)))
-
-
 def level_line(rates, last_frames):
     """Extends the rates of a method that learns from no images, such as the oracle, to a level line up to last_frames.
     Returns other rates unchanged."""
@@ -73,9 +65,9 @@ def draw_curves(axes, curves, wilson):
     """Draws our curves with full lines and markers, above the paper's curves, which are dashed, open and lighter.
     wilson: draws intervals of our curves as bands."""
     last_frames = max(100, *(curve.rates.index[-1] for curve in curves))
-    looks = styles([curve.name for curve in curves if curve.is_ours])
+    others = itertools.cycle(OTHERS)
     for curve in curves:
-        colour, marker = looks[curve.name]
+        colour, marker = METHOD_STYLES.get(curve.name) or next(others)
         rates = level_line(curve.rates, last_frames)
         look = dict(color=colour, linestyle="-", elinewidth=0.8, zorder=3 if rates is curve.rates else 1)
         if not curve.is_ours:
