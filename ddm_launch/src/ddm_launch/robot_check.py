@@ -32,27 +32,18 @@ def largest_error(joints, positions):
     return max(math.degrees(distance) if unit == "rad" else float(distance) for unit, distance in zip(joints.units, distances))
 
 
-class Load:
-    """Trains models on the recorded bags in an endless loop, in a separate process, to load the processor."""
+LOAD = """while sleep 0.5; do
+  OMP_NUM_THREADS=1 "$0" --config "$1" --out "$2/model.ddm" "$3"/trial_*/trial.bag >"$2/output" 2>&1 && echo >>"$2/trained"
+done"""
 
-    LOOP = """while sleep 0.5; do
-      OMP_NUM_THREADS=1 "$0" --config "$1" --out "$2/model.ddm" "$3"/trial_*/trial.bag >"$2/output" 2>&1 && echo >>"$2/trained"
-    done"""
 
-    def __init__(self, runs, preset_file):
-        self._scratch = tempfile.TemporaryDirectory()
-        words = [find_program("train_from_bags", "ddm_model"), preset_file, self._scratch.name, runs]
-        self._process = subprocess.Popen(["setpriv", "--pdeathsig", "KILL", "bash", "-c", self.LOOP, *words],
-                                         stdin=subprocess.DEVNULL, start_new_session=True)
-
-    def num_trainings(self):
-        """Number of trainings that have finished."""
-        path = os.path.join(self._scratch.name, "trained")
-        return os.path.getsize(path) if os.path.exists(path) else 0
-
-    def end(self):
-        os.killpg(self._process.pid, signal.SIGKILL)
-        self._process.wait()
+def start_load(runs, scratch):
+    """Trains models on the recorded bags in an endless loop, in a separate process, to load the processor. The file
+    SCRATCH/trained gets a byte for each training that has finished."""
+    words = [find_program("train_from_bags", "ddm_model"), rospy.get_param("~preset_file"), scratch, runs]
+    process = subprocess.Popen(["setpriv", "--pdeathsig", "KILL", "bash", "-c", LOAD, *words], stdin=subprocess.DEVNULL,
+                               start_new_session=True)
+    rospy.on_shutdown(lambda: os.killpg(process.pid, signal.SIGKILL))
 
 
 def call(name, kind, *values, **fields):
@@ -83,7 +74,9 @@ class RobotCheck:
         self._goal, self._truth = None, {}
         self._latencies_ms, self._misses = [], 0
         self._frames, self._control_s, self._evaluations = 0, 0.0, []
-        self.load = Load(self._runs, rospy.get_param("~preset_file")) if rospy.get_param("~load") else None
+        self._scratch = tempfile.TemporaryDirectory()
+        if rospy.get_param("~load"):
+            start_load(self._runs, self._scratch.name)
         for name, kind, callback in (("plant/ground_truth/joint_states", JointState, self._on_truth),
                                      ("latency", Float64, self._on_latency),
                                      ("deadline_misses", UInt32, self._on_misses),
@@ -122,11 +115,12 @@ class RobotCheck:
         write_file(os.path.join(self._runs, "robot_check.yaml"), yaml.safe_dump(self._result(), sort_keys=False))
 
     def _result(self):
+        trained = os.path.join(self._scratch.name, "trained")
         median, p99, largest = map(float, np.quantile(self._latencies_ms or [math.nan], (0.5, 0.99, 1.0)))
         return {"frames": self._frames, "control_minutes": round(self._control_s / 60.0, 2),
                 "deadline_misses": self._misses,
                 "latency_ms": {"median": round(median, 2), "p99": round(p99, 2), "max": round(largest, 2)},
-                "other_trainings": self.load.num_trainings() if self.load else 0,
+                "other_trainings": os.path.getsize(trained) if os.path.exists(trained) else 0,
                 "error_unit": self._joints.facts["error_unit"], "evaluations": self._evaluations,
                 "in_time": self._misses == 0 and p99 < LATENCY_P99_MS,
                 "reached": bool(self._evaluations) and self._evaluations[-1]["reached"]}
@@ -139,9 +133,7 @@ def main():
     except Failure as failure:
         rospy.logfatal("robot_check: %s", failure)
         return 1
-    check = RobotCheck(joints)
-    if check.load:
-        rospy.on_shutdown(check.load.end)
+    RobotCheck(joints)  # its subscribers keep it
     try:
         show_goal_and_enable(joints.facts["goal"])
     except (rospy.ROSException, rospy.ServiceException) as error:
