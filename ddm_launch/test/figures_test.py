@@ -12,6 +12,7 @@ from rooms import PACKAGE
 from ddm_launch import figure, figure_style, film, learning_curve, success_rate
 from ddm_launch.command import Failure
 from ddm_launch.plant import draw_evaluation
+from ddm_launch.run_folder import read_trials
 from ddm_model.model import load
 from ddm_study import study
 
@@ -94,10 +95,9 @@ def test_tables_that_say_nothing_of_success_are_refused(rows, part, tmp_path):
 def test_errors_are_in_the_unit_of_the_run_and_a_run_must_tell_its_goal(tmp_path):
     (tmp_path / "trials.csv").write_text(HEADER + "0,0,100,1,-0.04\n")
     config = tmp_path / "config.yaml"
-    config.write_text("goal: {tolerance: 0.05, error_unit: m}\n")
     with figure_style.new_screen_figure(7.0, 4.2) as drawn:
         axes = drawn.subplots()
-        learning_curve.draw_one(axes, str(tmp_path))
+        learning_curve.draw_one(axes, read_trials(str(tmp_path / "trials.csv")), "m", 0.05)
         assert "[m]" in axes.get_ylabel()
         assert axes.lines[0].get_ydata().tolist() == [0.04]
     for text in ("goal: [\n", "plant: {dt: 0.1}\n", "goal: {tolerance: 0.05}\n", "7\n"):

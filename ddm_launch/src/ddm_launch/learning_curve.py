@@ -1,7 +1,7 @@
 # Draws the learning curve of an experiment: the final error after each trial. The node publishes it as an image.
 # SPDX-License-Identifier: BSD-3-Clause
+import io
 import os
-import tempfile
 
 import numpy as np
 import rospy
@@ -12,19 +12,16 @@ import yaml
 from ddm_launch.command import Failure
 from ddm_launch.figure_style import (BLUE, GREY, ORANGE, VERMILLION, Figure, argument, new_figure, new_screen_figure,
                                      save)
-from ddm_launch.run_folder import LOADER, read_setting, read_table, read_trials
-from ddm_model.plain_file import write_file
+from ddm_launch.run_folder import LOADER, read_setting, read_trials
 
 
-def draw_one(axes, folder):
+def draw_one(axes, trials, unit, tolerance):
     """Draws the final error of the evaluations over the number of frames learned from. Markers distinguish successes
     from failures. If no final error is known, as on a robot, draws successes at 1 and failures at 0.
 
-    Raises Failure if neither final errors nor successes are known.
+    trials: table of read_trials(). unit, tolerance: of the final error. Raises Failure if neither final errors nor
+    successes are known.
     """
-    trials = read_trials(os.path.join(folder, "trials.csv"))
-    unit = read_setting(folder, "goal/error_unit")
-    tolerance = float(read_setting(folder, "goal/tolerance"))
     has_errors = trials.final_error.notna().any()
     trials = trials.assign(height=trials.final_error if has_errors else trials.success).dropna(subset=["height"])
     if trials.empty:
@@ -51,7 +48,8 @@ def draw_one(axes, folder):
 def draw(options):
     with new_screen_figure(7.0, 4.2) as figure:
         axes = figure.subplots()
-        draw_one(axes, options.folder)
+        draw_one(axes, read_trials(os.path.join(options.folder, "trials.csv")), read_setting(options.folder, "goal/error_unit"),
+                 float(read_setting(options.folder, "goal/tolerance")))
         axes.set_xlabel("frames learned from [image-torque pairs]")
         axes.set_xlim(left=0)
         axes.set_title("Greedy policy after each trial")
@@ -61,9 +59,8 @@ def draw(options):
         save(figure, options.out)
 
 
-def draw_model_errors(axes, path):
+def draw_model_errors(axes, table):
     """Draws V_R and V_P per frame, for models that have them."""
-    table = read_table(path, "frames", "v_r", "v_p")
     for name, label, colour in (("v_r", "reconstruction V_R", GREY), ("v_p", "prediction V_P", ORANGE)):
         known = table[table[name] > 0.0]
         axes.semilogy(known.frames, known[name] / known.frames, color=colour, marker=".", label=label)
@@ -73,19 +70,17 @@ def draw_model_errors(axes, path):
 def picture(text):
     """Draws the image for a message on the topic `trials`: 640 x 480 pixels, RGB. The curves start at the left edge and
     grow to the right."""
-    trials = yaml.load(text, Loader=LOADER)
-    with tempfile.TemporaryDirectory() as folder, new_figure(6.4, 4.8, dpi=100) as figure:
-        table = os.path.join(folder, "trials.csv")
-        write_file(os.path.join(folder, "config.yaml"), text)
-        write_file(table, trials["trials_csv"])
+    news = yaml.load(text, Loader=LOADER)
+    with new_figure(6.4, 4.8, dpi=100) as figure:
         above, below = figure.subplots(2, 1, sharex=True, gridspec_kw={"height_ratios": (3, 2)})
-        if trials["trials_csv"].count("\n") > 1:
-            draw_model_errors(below, table)
+        if news["trials_csv"].count("\n") > 1:
+            trials = read_trials(io.StringIO(news["trials_csv"]))
+            draw_model_errors(below, trials)
             try:
-                draw_one(above, folder)
+                draw_one(above, trials, news["goal"]["error_unit"], news["goal"]["tolerance"])
             except Failure:
                 above.set_title("success is not known: there is no ground truth")
-        below.set_xlim(0, max(trials["frames"], below.dataLim.x1))  # includes the frames of start/bags
+        below.set_xlim(0, max(news["frames"], below.dataLim.x1))  # includes the frames of start/bags
         below.set_xlabel("frames learned from [image-torque pairs]")
         below.set_ylabel("errors per frame [grey²]")
         figure.canvas.draw()
