@@ -23,7 +23,7 @@ command again runs only the seeds that are not finished, and those from their la
 EPILOG = """\
 example:
   rosrun ddm_launch sweep --preset paper --plant pendulum --seeds 0:50 --trials 15 --out ~/runs/paper
-  rosrun ddm_launch sweep --seeds 0:50 --trials 15 --out ~/runs/oracle -- --method oracle
+  rosrun ddm_launch sweep --seeds 0:50 --trials 15 --out ~/runs/oracle --method oracle
 
 in DIR:
   sweep.csv has the rows of trials.csv (predictions.csv) of all finished seeds, seed_NNNN/ all that the program writes for a
@@ -55,14 +55,10 @@ def seed_range(text):
 def make_parser():
     parser = program_parser(
         "sweep", ABOUT, EPILOG, allow_abbrev=False,
-        usage="rosrun ddm_launch sweep --seeds A:B --out DIR [options] [-- options of the program]")
-    parser.add_argument("--preset", help="name in ddm_launch/config/presets; otherwise that of the files, or paper")
-    parser.add_argument("--plant", help="name in ddm_sim/config; otherwise that of the files, or pendulum")
+        usage="rosrun ddm_launch sweep --seeds A:B --out DIR [options] [options of the program, also after --]")
     parser.add_argument("--seeds", type=seed_range, required=True, metavar="A:B", help="seeds A ... B - 1")
     parser.add_argument("--trials", type=int, metavar="T", help="of run_experiment; default 15")
     parser.add_argument("--out", required=True, metavar="DIR", help="folder for the results")
-    parser.add_argument("--set", action="append", default=[], metavar="BLOCK/KEY=VALUE",
-                        help="a value that wins over all files; a list is [A, B]; repeatable")
     parser.add_argument("--jobs", type=number(int, 1), metavar="N",
                         help="seeds at a time on each host, default one per core; with --slurm in all, default any")
     parser.add_argument("--hosts", metavar="FILE", help="spread over ssh hosts")
@@ -77,11 +73,8 @@ def parse(arguments):
     with code 2."""
     parser = make_parser()
     split = arguments.index("--") if "--" in arguments else len(arguments)
-    options = parser.parse_args(arguments[:split])
-    more = [word for name in ("preset", "plant") if getattr(options, name) for word in ("--" + name, getattr(options, name))]
+    options, more = parser.parse_known_args(arguments[:split])
     more += [expand_home(word) for word in arguments[split + 1:]]
-    for value in options.set:
-        more += ["--set", value]
     if options.program != "run_experiment" and options.trials is not None:
         parser.error("--trials is an option of run_experiment, %s has none: leave it out" % options.program)
     if options.program == "run_experiment" and options.trials is None:
