@@ -4,7 +4,6 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "pilco/moments.h"
@@ -12,9 +11,6 @@
 namespace ddm::pilco {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kLogTwoPi = 1.8378770664093453;
 /// Largest squared distance [length-scales^2] at which the covariance is computed. There it is 1e-100
 /// of the signal's variance; at larger distances it is set to zero. Products of such small numbers
 /// would be denormal, which processors compute a hundred times slower.
@@ -94,13 +90,6 @@ Eigen::VectorXd likelihoodGradient(const Eigen::MatrixXd& inputs, const Eigen::V
   return gradient;
 }
 
-void setTheta(const Eigen::VectorXd& theta, Eigen::Index output, Hyperparameters* out) {
-  const Eigen::Index dim = out->log_length_scales.rows();
-  out->log_length_scales.col(output) = theta.head(dim);
-  out->log_signal_std[output] = theta[dim];
-  out->log_noise_std[output] = theta[dim + 1];
-}
-
 }  // namespace
 
 Eigen::MatrixXd squaredExponential(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b,
@@ -163,24 +152,17 @@ Eigen::VectorXd sampleStd(const Eigen::MatrixXd& samples) {
   return (centred.rowwise().squaredNorm() / static_cast<double>(samples.cols() - 1)).cwiseSqrt();
 }
 
-Eigen::VectorXd thetaOf(const Hyperparameters& hyperparameters, int output) {
-  const Eigen::Index dim = hyperparameters.log_length_scales.rows();
-  Eigen::VectorXd theta(dim + 2);
-  theta << hyperparameters.log_length_scales.col(output), hyperparameters.log_signal_std[output],
-      hyperparameters.log_noise_std[output];
-  return theta;
-}
-
 Hyperparameters initialHyperparameters(const Eigen::MatrixXd& inputs,
                                        const Eigen::MatrixXd& targets) {
   eigen_assert(inputs.cols() == targets.rows());
   require(inputs.cols() >= 2, "training a GP needs at least 2 points, got ", inputs.cols());
   requireVaried(inputs, "input");
   requireVaried(targets.transpose(), "target");
-  Hyperparameters out;
-  out.log_length_scales = sampleStd(inputs).array().log().matrix().replicate(1, targets.cols());
-  out.log_signal_std = sampleStd(targets.transpose()).array().log();
-  out.log_noise_std = out.log_signal_std.array() - std::log(10.0);
+  const Eigen::VectorXd log_spread = sampleStd(inputs).array().log();
+  const Eigen::VectorXd log_signal = sampleStd(targets.transpose()).array().log();
+  Hyperparameters out(inputs.rows() + 2, targets.cols());
+  out << log_spread.replicate(1, targets.cols()), log_signal.transpose(),
+      (log_signal.array() - std::log(10.0)).matrix().transpose();
   return out;
 }
 
@@ -188,21 +170,18 @@ GpFit makeGpModel(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets,
                   const Hyperparameters& hyperparameters) {
   eigen_assert(inputs.cols() == targets.rows());
   GpFit fit;
-  fit.model.inputs = inputs;
-  fit.model.hyperparameters = hyperparameters;
-  fit.model.beta.resize(targets.rows(), targets.cols());
+  GpModel model{inputs, hyperparameters, Eigen::MatrixXd(targets.rows(), targets.cols()), {}};
   for (int a = 0; a < targets.cols(); ++a) {
-    const Covariance covariance(inputs, thetaOf(hyperparameters, a));
+    const Covariance covariance(inputs, hyperparameters.col(a));
     if (!covariance.positiveDefinite()) {
-      fit.model = GpModel();
       fit.message = textOf("the covariance of output ", a + 1,
                            " is not positive definite: its noise std must be larger");
       return fit;
     }
-    fit.model.beta.col(a) = covariance.factor.solve(targets.col(a));
-    fit.model.inverse.push_back(covariance.inverse());
+    model.beta.col(a) = covariance.factor.solve(targets.col(a));
+    model.inverse.push_back(covariance.inverse());
   }
-  fit.ok = true;
+  fit.model = std::move(model);
   return fit;
 }
 
@@ -210,8 +189,14 @@ void GpFit::addMessage(const std::string& text) {
   if (!text.empty()) message += (message.empty() ? "" : "; ") + text;
 }
 
+void GpFit::add(GpFit later) {
+  model = std::move(later.model);
+  outputs.insert(outputs.end(), later.outputs.begin(), later.outputs.end());
+  addMessage(later.message);
+}
+
 GpFit trainGp(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets, int max_iterations,
-              const Hyperparameters* start, const std::function<void()>& on_evaluation) {
+              const Hyperparameters& start, const std::function<void()>& on_evaluation) {
   const Hyperparameters initial = initialHyperparameters(inputs, targets);
   const Eigen::VectorXd input_std = sampleStd(inputs);
 
@@ -233,10 +218,10 @@ GpFit trainGp(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets, int
         if (on_evaluation) on_evaluation();
         return plain + penalty(theta, input_std, gradient);
       };
-      return minimise(objective, thetaOf(from, a), solver);
+      return minimise(objective, from.col(a), solver);
     };
-    Minimum minimum = trainFrom(start != nullptr ? *start : initial);
-    if (minimum.reason == MinimumReason::kStartFailed && start != nullptr) {
+    Minimum minimum = trainFrom(start.size() > 0 ? start : initial);
+    if (minimum.reason == MinimumReason::kStartFailed && start.size() > 0) {
       say("the previous hyper-parameters cannot be evaluated, trained anew");
       minimum = trainFrom(initial);
     }
@@ -246,12 +231,9 @@ GpFit trainGp(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets, int
     }
     training.outputs.push_back(minimum);
     if (!minimum.improved() && !minimum.converged()) say("kept at the start, " + minimum.message);
-    setTheta(minimum.x, a, &trained);
+    trained.col(a) = minimum.x;
   }
-  GpFit fit = makeGpModel(inputs, targets, trained);
-  training.ok = fit.ok;
-  training.model = std::move(fit.model);
-  training.addMessage(fit.message);
+  training.add(makeGpModel(inputs, targets, trained));
   return training;
 }
 

@@ -15,12 +15,9 @@
 namespace ddm::pilco {
 
 /// Hyper-parameters of E independent GPs with squared-exponential covariance and one length-scale
-/// per input (ARD). They are natural logarithms, so that any real number is valid.
-struct Hyperparameters {
-  Eigen::MatrixXd log_length_scales;  ///< [D x E]
-  Eigen::VectorXd log_signal_std;     ///< [E]
-  Eigen::VectorXd log_noise_std;      ///< [E]
-};
+/// per input (ARD): theta = [log l_1 ... log l_D, log sf, log sn] of each output is a column. They
+/// are natural logarithms, so that any real number is valid.                          [D + 2 x E]
+using Hyperparameters = Eigen::MatrixXd;
 
 /// A trained GP: everything needed to compute its predictive distribution at a Gaussian input.
 ///
@@ -43,12 +40,14 @@ struct GpModel {
 
 /// Result of a training: the GPs, or the reason why the training failed.
 struct GpFit {
-  bool ok = false;               ///< whether `model` is valid
-  GpModel model;                 ///< empty if `ok` is false
+  GpModel model;                 ///< empty if the training failed
   std::vector<Minimum> outputs;  ///< result of each minimisation
   std::string message;           ///< failure or warning; empty if there is none
 
+  bool ok() const { return model.numPoints() > 0; }
   void addMessage(const std::string& text);
+  /// Takes the model of a later step of the training, and adds its minimisations and its message.
+  void add(GpFit later);
 };
 
 /// A line search takes about two evaluations. One that takes many more suffers from rounding
@@ -58,6 +57,7 @@ constexpr double kRidge = 1e-6;  ///< added to the diagonal of Kmm, as published
 constexpr double kLengthScaleLimit = 100.0;     ///< in units of the input's spread, as published
 constexpr double kSignalToNoiseLimit = 1000.0;  ///< signal std / noise std, as published
 constexpr int kPenaltyPower = 30;               ///< steepness of the penalty, as published
+constexpr double kLogTwoPi = 1.8378770664093453;
 
 /// k(a, b) = signal_std^2 exp(-1/2 sum_d ((a_d - b_d) / length_scales_d)^2) for all pairs.
 ///
@@ -73,16 +73,13 @@ Eigen::MatrixXd squaredExponential(const Eigen::MatrixXd& a, const Eigen::Matrix
 /// @pre at least two columns (checked by eigen_assert)
 Eigen::VectorXd sampleStd(const Eigen::MatrixXd& samples);
 
-/// theta of one output: [log l_1 ... log l_D, log sf, log sn].                        [D + 2]
-Eigen::VectorXd thetaOf(const Hyperparameters& hyperparameters, int output);
-
 /// Negative log marginal likelihood of one output:
 ///
 ///   1/2 y^T A^-1 y + 1/2 log|A| + n/2 log(2 pi),   A = K + sn^2 I
 ///
 /// @param inputs    one input per column                                               [D x n]
 /// @param targets   y                                                                      [n]
-/// @param theta     see thetaOf()                                                      [D + 2]
+/// @param theta     column of Hyperparameters                                          [D + 2]
 /// @param gradient  (optional) out: gradient with respect to theta                     [D + 2]
 /// @return          +infinity (gradient NaN) if A is not positive definite in double
 ///                  precision, or if theta is not finite
@@ -94,7 +91,7 @@ double negativeLogLikelihood(const Eigen::MatrixXd& inputs, const Eigen::VectorX
 ///   sum_d (log(l_d / std_d) / log kLengthScaleLimit)^p + (log(sf / sn) / log kSignalToNoiseLimit)^p
 ///
 /// with p = kPenaltyPower.
-/// @param theta      see thetaOf()                                                     [D + 2]
+/// @param theta      column of Hyperparameters                                         [D + 2]
 /// @param input_std  spread of each input                                                  [D]
 /// @param gradient   (optional) the gradient is ADDED to it                            [D + 2]
 double penalty(const Eigen::VectorXd& theta, const Eigen::VectorXd& input_std,
@@ -121,11 +118,11 @@ GpFit makeGpModel(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets,
 /// objective cannot be evaluated at `start` (a covariance is not positive definite), the training
 /// begins at initialHyperparameters() instead, and the message says so.
 /// @param max_iterations  limit for each output
-/// @param start           (optional) previous optimum; null: initialHyperparameters()
+/// @param start           previous optimum; empty: initialHyperparameters()
 /// @param on_evaluation   (optional) called after each evaluation of an objective
 /// @throws std::invalid_argument as initialHyperparameters()
 GpFit trainGp(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets, int max_iterations,
-              const Hyperparameters* start = nullptr,
+              const Hyperparameters& start = {},
               const std::function<void()>& on_evaluation = nullptr);
 
 /// Negative log marginal likelihood of all outputs together under FITC:
@@ -173,6 +170,7 @@ struct GpLearnerState {
 /// @param rng      draws gp/training_points and, in the first sparse GP, the initial inducing
 ///                 inputs
 /// @param state    in: state after the previous trial; out: state after this trial
+/// @pre the sizes of the state fit the data (checked by eigen_assert)
 /// @throws std::invalid_argument as trainGp(); the state is then unchanged
 GpFit learnGp(const GpTrainingOptions& training, const SparseGpOptions& sparse,
               const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets, std::mt19937_64* rng,

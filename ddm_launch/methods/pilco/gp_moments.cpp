@@ -4,13 +4,11 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
-#include <limits>
+#include <optional>
 #include <utility>
 
 namespace ddm::pilco {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// Index of the pair a <= b in a list of all pairs.
 std::size_t pairIndex(int a, int b) { return static_cast<std::size_t>(b * (b + 1) / 2 + a); }
@@ -65,18 +63,40 @@ ExponentialSums exponentialSums(const ExponentialMatrix& matrix,
   return sums;
 }
 
+/// Terms of a pair of outputs that are the same for all points.
+struct Pair {
+  Eigen::MatrixXd inverse_R;  ///< R^-1 = (I + s P)^-1                       [D x D]
+  Eigen::MatrixXd inner;      ///< T = R^-1 s, symmetric                     [D x D]
+  double log_det_R;
+};
+
+/// @param precision_sum  P = Lambda_a^-1 + Lambda_b^-1, a diagonal              [D]
+/// @return               empty if R has eigenvalues that are not positive
+std::optional<Pair> pairTerms(const Eigen::VectorXd& precision_sum, const Eigen::MatrixXd& s) {
+  // With C = P^1/2: R^-1 = C^-1 (I + C s C)^-1 C and T = C^-1 (I + C s C)^-1 (C s C) C^-1.
+  const Eigen::VectorXd root = precision_sum.cwiseSqrt();
+  const Eigen::VectorXd inverse_root = root.cwiseInverse();
+  const Eigen::MatrixXd scaled = root.asDiagonal() * symmetricPart(s) * root.asDiagonal();
+  const Eigen::LLT<Eigen::MatrixXd> llt(Eigen::MatrixXd::Identity(s.rows(), s.cols()) + scaled);
+  if (llt.info() != Eigen::Success) return std::nullopt;
+  return Pair{
+      inverse_root.asDiagonal() * llt.solve(Eigen::MatrixXd(root.asDiagonal())),
+      symmetricPart(inverse_root.asDiagonal() * llt.solve(scaled) * inverse_root.asDiagonal()),
+      2.0 * llt.matrixLLT().diagonal().array().log().sum()};
+}
+
 }  // namespace
 
 GpMoments::GpMoments(GpModel model) : model_(std::move(model)) {
   const int outputs = model_.outputDim();
   eigen_assert(model_.numPoints() >= 1 && outputs >= 1 &&
                model_.beta.rows() == model_.numPoints() &&
-               model_.hyperparameters.log_length_scales.rows() == model_.inputDim() &&
-               model_.hyperparameters.log_length_scales.cols() == outputs &&
-               model_.hyperparameters.log_signal_std.size() == outputs &&
+               model_.hyperparameters.rows() == model_.inputDim() + 2 &&
+               model_.hyperparameters.cols() == outputs &&
                (model_.inverse.empty() || static_cast<int>(model_.inverse.size()) == outputs));
-  precisions_ = (-2.0 * model_.hyperparameters.log_length_scales.array()).exp();
-  log_signal_variance_ = 2.0 * model_.hyperparameters.log_signal_std;
+  const Eigen::MatrixXd log_length_scales = model_.hyperparameters.topRows(model_.inputDim());
+  precisions_ = (-2.0 * log_length_scales.array()).exp();
+  log_signal_variance_ = 2.0 * model_.hyperparameters.row(model_.inputDim()).transpose();
   finite_ = model_.inputs.allFinite() && model_.beta.allFinite() && precisions_.allFinite() &&
             log_signal_variance_.allFinite() && (precisions_.array() > 0.0).all();
 
@@ -149,24 +169,6 @@ bool GpMoments::predictMeans(const Eigen::MatrixXd& z, const Eigen::MatrixXd& s,
   return true;
 }
 
-GpMoments::Pair GpMoments::pairTerms(int a, int b, const Eigen::MatrixXd& s) const {
-  const int dim = model_.inputDim();
-  Pair pair;
-  pair.precision_sum = precisions_.col(a) + precisions_.col(b);
-  // With C = P^1/2: R^-1 = C^-1 (I + C s C)^-1 C and T = C^-1 (I + C s C)^-1 (C s C) C^-1.
-  const Eigen::VectorXd root = pair.precision_sum.cwiseSqrt();
-  const Eigen::VectorXd inverse_root = root.cwiseInverse();
-  const Eigen::MatrixXd scaled = root.asDiagonal() * symmetricPart(s) * root.asDiagonal();
-  const Eigen::LLT<Eigen::MatrixXd> llt(Eigen::MatrixXd::Identity(dim, dim) + scaled);
-  pair.valid = llt.info() == Eigen::Success;
-  if (!pair.valid) return pair;
-  pair.log_det_R = 2.0 * llt.matrixLLT().diagonal().array().log().sum();
-  pair.inverse_R = inverse_root.asDiagonal() * llt.solve(Eigen::MatrixXd(root.asDiagonal()));
-  pair.inner =
-      symmetricPart(inverse_root.asDiagonal() * llt.solve(scaled) * inverse_root.asDiagonal());
-  return pair;
-}
-
 /// Computes S_ab. With u_i = Lambda_a^-1 z_i and v_j = Lambda_b^-1 z_j, so that w_ij = u_i + v_j:
 ///
 ///   log Q_ij = f_i + g_j + u_i^T T v_j
@@ -179,17 +181,18 @@ GpMoments::Pair GpMoments::pairTerms(int a, int b, const Eigen::MatrixXd& s) con
 /// Returns false if R has eigenvalues that are not positive.
 bool GpMoments::predictPair(int a, int b, const Eigen::MatrixXd& z, const Eigen::MatrixXd& s,
                             Moments* output, Tape* tape) const {
-  const Pair pair = pairTerms(a, b, s);
-  if (!pair.valid) return false;
+  const Eigen::VectorXd precision_sum = precisions_.col(a) + precisions_.col(b);
+  const std::optional<Pair> pair = pairTerms(precision_sum, s);
+  if (!pair) return false;
 
   const auto quadratic = [&](const Eigen::Ref<const Eigen::MatrixXd>& scaled) -> Eigen::VectorXd {
-    return (scaled * pair.inner - z).cwiseProduct(scaled).rowwise().sum();
+    return (scaled * pair->inner - z).cwiseProduct(scaled).rowwise().sum();
   };
   ExponentialMatrix matrix;
   matrix.u = z * precisions_.col(a).asDiagonal();
   const Eigen::MatrixXd scaled_b = z * precisions_.col(b).asDiagonal();
-  matrix.v.noalias() = pair.inner * scaled_b.transpose();
-  matrix.f = (log_signal_variance_[a] - 0.5 * pair.log_det_R) + 0.5 * quadratic(matrix.u).array();
+  matrix.v.noalias() = pair->inner * scaled_b.transpose();
+  matrix.f = (log_signal_variance_[a] - 0.5 * pair->log_det_R) + 0.5 * quadratic(matrix.u).array();
   matrix.g = log_signal_variance_[b] + 0.5 * quadratic(scaled_b).array();
   matrix.column_weights =
       a == b ? Eigen::VectorXd::Ones(model_.numPoints()) : Eigen::VectorXd(model_.beta.col(b));
@@ -212,17 +215,11 @@ bool GpMoments::predictPair(int a, int b, const Eigen::MatrixXd& z, const Eigen:
   const Eigen::MatrixXd second = u.transpose() * rows.asDiagonal() * u +
                                  scaled_b.transpose() * sums.columns.asDiagonal() * scaled_b +
                                  cross + cross.transpose();
-  const Eigen::MatrixXd& K = pair.inverse_R;
+  const Eigen::MatrixXd& K = pair->inverse_R;
   tape->d_sum_mean[pairIndex(a, b)] = factor * (K.transpose() * first);
-  tape->d_sum_covariance[pairIndex(a, b)] =
-      symmetricPart(0.5 * (factor * (K.transpose() * second * K) -
-                           total * (pair.precision_sum.asDiagonal() * K)));
+  tape->d_sum_covariance[pairIndex(a, b)] = symmetricPart(
+      0.5 * (factor * (K.transpose() * second * K) - total * (precision_sum.asDiagonal() * K)));
   return true;
-}
-
-/// dJ/dM, including the derivative of the term -M M^T of S.
-Eigen::VectorXd GpMoments::meanAdjoint(const Tape& tape, const Moments& d_output) const {
-  return d_output.mean - (d_output.covariance + d_output.covariance.transpose()) * tape.mean;
 }
 
 /// With B = (s + Lambda)^-1, p_i = beta_i q_i, mu = dJ/dM, nu = dJ/dV and
@@ -230,73 +227,55 @@ Eigen::VectorXd GpMoments::meanAdjoint(const Tape& tape, const Moments& d_output
 ///
 ///   dJ/dm = B (sum g_i z_i - M nu)
 ///   dJ/ds = (B (sum g_i z_i z_i^T) B - B sum g_i - B nu V^T - V nu^T B) / 2
-Gaussian GpMoments::backward(const Tape& tape, const Moments& d_output) const {
+///
+/// and by the model, with d Lambda_dd = 2 l_d^2 d log l_d:
+///
+///   dJ/dX_i = p_i B nu - g_i B z_i,   dJ/dbeta_i = q_i (mu + nu^T B z_i)
+///   dJ/dlog l_d = 2 l_d^2 [dJ/ds]_dd + sum g_i
+Gaussian GpMoments::backward(const Tape& tape, const Moments& d_output, GpGradient* d_model) const {
   const int dim = model_.inputDim();
   const int outputs = model_.outputDim();
   eigen_assert(d_output.mean.size() == outputs && d_output.gain.rows() == dim);
+  eigen_assert(d_model == nullptr || model_.inverse.empty());
   Gaussian d_input = constantGaussian(dim);
-  const Eigen::VectorXd d_mean = meanAdjoint(tape, d_output);
+  // dJ/dM, including the derivative of the term -M M^T of S
+  const Eigen::VectorXd d_mean =
+      d_output.mean - (d_output.covariance + d_output.covariance.transpose()) * tape.mean;
   const Eigen::MatrixXd z = (model_.inputs.colwise() - tape.input.mean).transpose();
   for (int a = 0; a < outputs; ++a) {
     const Eigen::MatrixXd& B = tape.inverse_widths[a];
     const Eigen::VectorXd nu = d_output.gain.col(a);
     const Eigen::VectorXd B_nu = B * nu;
-    const Eigen::VectorXd terms = tape.kernel_means.col(a).cwiseProduct(model_.beta.col(a));
+    const auto q = tape.kernel_means.col(a);
+    const Eigen::VectorXd terms = q.cwiseProduct(model_.beta.col(a));
     const Eigen::VectorXd gain = B * (z.transpose() * terms);
-    const Eigen::VectorXd g = terms.array() * (d_mean[a] + (z * B_nu).array());
+    const Eigen::VectorXd d_terms = d_mean[a] + (z * B_nu).array();
+    const Eigen::VectorXd g = terms.cwiseProduct(d_terms);
     const Eigen::MatrixXd second = z.transpose() * g.asDiagonal() * z;
     d_input.mean += B * (z.transpose() * g - tape.mean[a] * nu);
     d_input.covariance +=
         0.5 * (B * second * B - g.sum() * B - B_nu * gain.transpose() - gain * B_nu.transpose());
+    if (d_model == nullptr) continue;
+    const Eigen::MatrixXd B_z = z * B;  // row i: (B z_i)^T
+    d_model->inputs += B_nu * terms.transpose() - B_z.transpose() * g.asDiagonal();
+    d_model->beta.col(a) += q.cwiseProduct(d_terms);
+    const Eigen::VectorXd model_gain = B_z.transpose() * terms;
+    const Eigen::VectorXd d_widths =
+        0.5 * (B_z.cwiseProduct(B_z).transpose() * g - g.sum() * B.diagonal()) -
+        B_nu.cwiseProduct(model_gain);
+    d_model->log_length_scales.col(a).array() +=
+        2.0 * d_widths.array() / precisions_.col(a).array() + g.sum();
   }
   for (int b = 0; b < outputs; ++b) {
     for (int a = 0; a <= b; ++a) {
       const double d_sum = pairAdjoint(a, b, d_output);
       d_input.mean += d_sum * tape.d_sum_mean[pairIndex(a, b)];
       d_input.covariance += d_sum * tape.d_sum_covariance[pairIndex(a, b)];
+      if (d_model != nullptr) pairToModel(a, b, d_sum, z, tape.input.covariance, d_model);
     }
   }
   d_input.covariance = symmetricPart(d_input.covariance);
   return d_input;
-}
-
-void GpMoments::backwardToModel(const Tape& tape, const Moments& d_output,
-                                GpGradient* d_model) const {
-  const int outputs = model_.outputDim();
-  eigen_assert(model_.inverse.empty());  // a policy: its model has no uncertainty
-  meanToModel(tape, d_output, d_model);
-  for (int b = 0; b < outputs; ++b) {
-    for (int a = 0; a <= b; ++a) {
-      pairToModel(a, b, pairAdjoint(a, b, d_output), tape, d_model);
-    }
-  }
-}
-
-/// Derivatives of M and V in the notation of backward(), with d Lambda_dd = 2 l_d^2 d log l_d:
-///
-///   dJ/dX_i = p_i B nu - g_i B z_i,   dJ/dbeta_i = q_i (mu + nu^T B z_i)
-///   dJ/dlog l_d = 2 l_d^2 [dJ/ds]_dd + sum g_i
-void GpMoments::meanToModel(const Tape& tape, const Moments& d_output, GpGradient* d_model) const {
-  const Eigen::VectorXd d_mean = meanAdjoint(tape, d_output);
-  const Eigen::MatrixXd z = (model_.inputs.colwise() - tape.input.mean).transpose();
-  for (int a = 0; a < model_.outputDim(); ++a) {
-    const Eigen::MatrixXd& B = tape.inverse_widths[a];
-    const auto q = tape.kernel_means.col(a);
-    const Eigen::VectorXd terms = q.cwiseProduct(model_.beta.col(a));
-    const Eigen::MatrixXd B_z = z * B;  // row i: (B z_i)^T
-    const Eigen::VectorXd B_nu = B * d_output.gain.col(a);
-    const Eigen::VectorXd gain = B_z.transpose() * terms;
-    const Eigen::VectorXd d_terms = d_mean[a] + (z * B_nu).array();
-    const Eigen::VectorXd g = terms.cwiseProduct(d_terms);
-
-    d_model->inputs += B_nu * terms.transpose() - B_z.transpose() * g.asDiagonal();
-    d_model->beta.col(a) += q.cwiseProduct(d_terms);
-    const Eigen::VectorXd d_widths =
-        0.5 * (B_z.cwiseProduct(B_z).transpose() * g - g.sum() * B.diagonal()) -
-        B_nu.cwiseProduct(gain);
-    d_model->log_length_scales.col(a).array() +=
-        2.0 * d_widths.array() / precisions_.col(a).array() + g.sum();
-  }
 }
 
 /// Derivatives of the double sum of S_ab, with u_i, v_j as in predictPair(), y_ij = T (u_i + v_j) -
@@ -306,22 +285,22 @@ void GpMoments::meanToModel(const Tape& tape, const Moments& d_output, GpGradien
 ///   dJ/dlog l_ad = dJ/dS_ab l_ad^-2 sum_ij P_ij (T_dd + y_ijd^2)
 ///
 /// and the same for b with i and j exchanged; for a = b the two parts are added.
-void GpMoments::pairToModel(int a, int b, double d_sum, const Tape& tape,
-                            GpGradient* d_model) const {
-  const Pair pair = pairTerms(a, b, tape.input.covariance);
-  if (!pair.valid) {
+void GpMoments::pairToModel(int a, int b, double d_sum, const Eigen::MatrixXd& z,
+                            const Eigen::MatrixXd& s, GpGradient* d_model) const {
+  const std::optional<Pair> pair = pairTerms(precisions_.col(a) + precisions_.col(b), s);
+  if (!pair) {
     d_model->beta.setConstant(kNaN);
     return;
   }
-  const Eigen::MatrixXd& T = pair.inner;
-  const Eigen::MatrixXd z = (model_.inputs.colwise() - tape.input.mean).transpose();
+  const Eigen::MatrixXd& T = pair->inner;
   const Eigen::MatrixXd u = z * precisions_.col(a).asDiagonal();
   const Eigen::MatrixXd v = z * precisions_.col(b).asDiagonal();
   const Eigen::MatrixXd T_u = u * T;  // row i: (T u_i)^T
   const Eigen::MatrixXd T_v = v * T;
   const Eigen::MatrixXd y_a = T_u - z;
   const Eigen::MatrixXd y_b = T_v - z;
-  const double log_scale = log_signal_variance_[a] + log_signal_variance_[b] - 0.5 * pair.log_det_R;
+  const double log_scale =
+      log_signal_variance_[a] + log_signal_variance_[b] - 0.5 * pair->log_det_R;
   Eigen::MatrixXd Q = T_u * v.transpose();
   Q.colwise() += 0.5 * y_a.cwiseProduct(u).rowwise().sum();
   Q.rowwise() += 0.5 * y_b.cwiseProduct(v).rowwise().sum().transpose();

@@ -56,34 +56,20 @@ class GpMoments {
 
   /// Vector-Jacobian product of predict().
   /// @param d_output  dJ/dM, dJ/dS, dJ/dV
+  /// @param d_model   (optional) dJ/d inputs, beta, log length-scales are ADDED to it. This forms
+  ///                  the matrix Q [n x n] and is meant for policies, which have few points and no
+  ///                  model uncertainty
   /// @return          dJ/dm, dJ/ds; dJ/ds is symmetric: if s(p,q) and s(q,p) change by h, J changes
   ///                  by h (entry pq + entry qp)
-  Gaussian backward(const Tape& tape, const Moments& d_output) const;
-
-  /// Vector-Jacobian product with respect to the model. It forms the matrix Q [n x n] and is meant
-  /// for policies, which have few points.
-  /// @param d_model  dJ/d inputs, beta, log length-scales are ADDED to it
-  /// @pre the model has no model uncertainty
-  void backwardToModel(const Tape& tape, const Moments& d_output, GpGradient* d_model) const;
+  Gaussian backward(const Tape& tape, const Moments& d_output, GpGradient* d_model = nullptr) const;
 
  private:
-  /// Terms of a pair of outputs that are the same for all points.
-  struct Pair {
-    Eigen::VectorXd precision_sum;  // P = Lambda_a^-1 + Lambda_b^-1, a diagonal [D]
-    Eigen::MatrixXd inverse_R;      // R^-1 = (I + s P)^-1                   [D x D]
-    Eigen::MatrixXd inner;          // T = R^-1 s, symmetric                 [D x D]
-    double log_det_R = 0.0;
-    bool valid = false;
-  };
-
-  Pair pairTerms(int a, int b, const Eigen::MatrixXd& s) const;
   bool predictMeans(const Eigen::MatrixXd& z, const Eigen::MatrixXd& s, Moments* output,
                     Tape* tape) const;
   bool predictPair(int a, int b, const Eigen::MatrixXd& z, const Eigen::MatrixXd& s,
                    Moments* output, Tape* tape) const;
-  Eigen::VectorXd meanAdjoint(const Tape& tape, const Moments& d_output) const;
-  void meanToModel(const Tape& tape, const Moments& d_output, GpGradient* d_model) const;
-  void pairToModel(int a, int b, double d_sum, const Tape& tape, GpGradient* d_model) const;
+  void pairToModel(int a, int b, double d_sum, const Eigen::MatrixXd& z, const Eigen::MatrixXd& s,
+                   GpGradient* d_model) const;
 
   GpModel model_;
   Eigen::MatrixXd precisions_;            // 1 / l^2                             [D x E]

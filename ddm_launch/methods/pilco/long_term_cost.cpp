@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace ddm::pilco {
@@ -26,14 +25,14 @@ Gaussian joint(const Moments& features, const Moments& control) {
 
 }  // namespace
 
-Propagation::Propagation(GpModel dynamics, const PropagationOptions& options)
+Propagation::Propagation(GpModel dynamics, const std::vector<int>& angles, bool noisy_policy_input)
     : state_dim_(dynamics.outputDim()),
-      features_(replaceAngles(state_dim_, options.angles)),
+      features_(replaceAngles(state_dim_, angles)),
       dynamics_(std::move(dynamics)),
-      options_(options) {
+      noisy_policy_input_(noisy_policy_input) {
   eigen_assert(controlDim() >= 1);
-  if (!options.noisy_policy_input) return;
-  const Eigen::VectorXd& log_noise_std = dynamics_.model().hyperparameters.log_noise_std;
+  const GpModel& model = dynamics_.model();
+  const Eigen::VectorXd log_noise_std = model.hyperparameters.row(model.inputDim() + 1).transpose();
   measurement_variance_ = 0.5 * (2.0 * log_noise_std.array()).exp();
 }
 
@@ -44,11 +43,11 @@ Gaussian Propagation::policyState(const Gaussian& state) const {
   return measured;
 }
 
-Gaussian Propagation::step(const SquashedPolicy& policy, const Gaussian& state, Tape* tape) const {
+Gaussian Propagation::step(const RbfPolicy& policy, const Gaussian& state, Tape* tape) const {
   eigen_assert(policy.inputDim() == featureDim() && policy.outputDim() == controlDim());
   const Moments features = features_.predict(state);
   const Gaussian policy_input =
-      marginal(options_.noisy_policy_input ? features_.predict(policyState(state)) : features);
+      marginal(noisy_policy_input_ ? features_.predict(policyState(state)) : features);
   const Moments control = policy.predict(policy_input);
   const Moments delta =
       dynamics_.predict(joint(features, control), tape != nullptr ? &tape->dynamics : nullptr);
@@ -57,18 +56,14 @@ Gaussian Propagation::step(const SquashedPolicy& policy, const Gaussian& state, 
       delta.gain.topRows(featureDim()) + control.gain * delta.gain.bottomRows(controlDim());
   const Eigen::MatrixXd cross = state.covariance * (features.gain * gain);
   if (tape != nullptr) {
-    tape->state = state;
-    tape->features = features;
-    tape->policy_input = policy_input;
-    tape->control = control;
-    tape->delta = delta;
+    *tape = {state, features, policy_input, control, delta, std::move(tape->dynamics)};
   }
   return Gaussian{state.mean + delta.mean,
                   symmetricPart(state.covariance + cross + cross.transpose() + delta.covariance)};
 }
 
-Gaussian Propagation::backward(const SquashedPolicy& policy, const Tape& tape,
-                               const Gaussian& d_next, Eigen::VectorXd* d_parameters) const {
+Gaussian Propagation::backward(const RbfPolicy& policy, const Tape& tape, const Gaussian& d_next,
+                               Eigen::VectorXd* d_parameters) const {
   const int num_features = featureDim();
   const int num_controls = controlDim();
   const Eigen::MatrixXd& s = tape.state.covariance;
@@ -102,7 +97,7 @@ Gaussian Propagation::backward(const SquashedPolicy& policy, const Tape& tape,
     d_state.mean += part.mean;
     d_state.covariance += part.covariance;
   };
-  if (options_.noisy_policy_input) {
+  if (noisy_policy_input_) {
     add(features_.backward(policyState(tape.state),
                            Moments{d_policy_input.mean, d_policy_input.covariance,
                                    Eigen::MatrixXd::Zero(state_dim_, num_features)}));
@@ -115,7 +110,7 @@ Gaussian Propagation::backward(const SquashedPolicy& policy, const Tape& tape,
   return d_state;
 }
 
-LongTermCost::LongTermCost(Propagation dynamics, StateCost cost, SquashedPolicy* policy,
+LongTermCost::LongTermCost(Propagation dynamics, StateCost cost, RbfPolicy* policy,
                            Gaussian initial_state, int horizon)
     : dynamics_(std::move(dynamics)),
       cost_(std::move(cost)),
@@ -125,43 +120,32 @@ LongTermCost::LongTermCost(Propagation dynamics, StateCost cost, SquashedPolicy*
   eigen_assert(horizon >= 1 && cost_.inputDim() == dynamics_.stateDim());
 }
 
-/// Predicts all steps. Returns false if a prediction is not finite.
-bool LongTermCost::predict(bool record) {
+double LongTermCost::evaluate(const Eigen::VectorXd& parameters, Eigen::VectorXd* gradient) {
+  policy_->setParameters(parameters);
+  if (gradient != nullptr) gradient->setConstant(parameters.size(), kNaN);
   states_.resize(1);
   costs_.clear();
-  if (record) tapes_.resize(horizon_);
-  for (int t = 0; t < horizon_; ++t) {
-    states_.push_back(dynamics_.step(*policy_, states_[t], record ? &tapes_[t] : nullptr));
-    costs_.push_back(cost_.expected(states_.back()));
-    if (!states_.back().mean.allFinite() || !states_.back().covariance.allFinite() ||
-        !std::isfinite(costs_.back())) {
-      states_.pop_back();
-      costs_.pop_back();
-      return false;
-    }
-  }
-  return true;
-}
-
-double LongTermCost::evaluate(const Eigen::VectorXd& parameters, Eigen::VectorXd* gradient) {
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  policy_->setParameters(parameters);
-  const bool finite = predict(gradient != nullptr);
-  if (gradient != nullptr) {
-    *gradient = Eigen::VectorXd::Constant(parameters.size(), finite ? 0.0 : kNaN);
-  }
-  if (!finite) return kNaN;
+  std::vector<Propagation::Tape> tapes(gradient != nullptr ? horizon_ : 0);
   double total = 0.0;
-  for (const double cost : costs_) total += cost;
+  for (int t = 0; t < horizon_; ++t) {
+    const Gaussian next =
+        dynamics_.step(*policy_, states_[t], gradient != nullptr ? &tapes[t] : nullptr);
+    const double cost = cost_.expected(next);
+    if (!next.mean.allFinite() || !next.covariance.allFinite() || !std::isfinite(cost)) return kNaN;
+    states_.push_back(next);
+    costs_.push_back(cost);
+    total += cost;
+  }
   if (gradient == nullptr) return total;
 
+  gradient->setZero();
   Gaussian d_state = constantGaussian(dynamics_.stateDim());
   for (int t = horizon_; t > 0; --t) {
     Gaussian d_cost;
     cost_.expected(states_[t], &d_cost);
     d_state.mean += d_cost.mean;
     d_state.covariance += d_cost.covariance;
-    d_state = dynamics_.backward(*policy_, tapes_[t - 1], d_state, gradient);
+    d_state = dynamics_.backward(*policy_, tapes[t - 1], d_state, gradient);
   }
   return total;
 }

@@ -11,15 +11,6 @@
 
 namespace ddm::pilco {
 
-/// Properties of the state that the dynamics GP and the policy take into account.
-struct PropagationOptions {
-  std::vector<int> angles;  ///< entries of the state that are angles [rad]
-  /// Whether the policy sees a noisy measurement of the state. If so, half the noise variance of
-  /// each output of the GP is added to the variance of the state at the input of the policy. It is
-  /// half, because the GP learned the noise from differences of two measurements.
-  bool noisy_policy_input = false;
-};
-
 /// p(x_t) = N(m, s)  ->  p(x_{t+1}) (Deisenroth, Fox and Rasmussen, 2015, Sec. 3.2):
 ///
 ///   f = features of x (all entries that are not angles, then sine and cosine of each angle)
@@ -40,23 +31,28 @@ class Propagation {
     GpMoments::Tape dynamics;
   };
 
-  /// @param dynamics  GP with inputs [f, u]; output a is the change of state entry a
-  Propagation(GpModel dynamics, const PropagationOptions& options);
+  /// @param dynamics            GP with inputs [f, u]; output a is the change of state entry a
+  /// @param angles              entries of the state that are angles [rad]
+  /// @param noisy_policy_input  whether the policy sees a noisy measurement of the state. If so,
+  ///                            half the noise variance of each output of the GP is added to the
+  ///                            variance of the state at the input of the policy. It is half,
+  ///                            because the GP learned the noise from differences of two
+  ///                            measurements
+  Propagation(GpModel dynamics, const std::vector<int>& angles, bool noisy_policy_input);
 
   int stateDim() const { return state_dim_; }
   int featureDim() const { return features_.outputDim(); }
   int controlDim() const { return dynamics_.model().inputDim() - featureDim(); }
-  const Augmentation& features() const { return features_; }
 
   /// @param state  p(x_t)
   /// @param tape   (optional) out: record for backward()
-  Gaussian step(const SquashedPolicy& policy, const Gaussian& state, Tape* tape = nullptr) const;
+  Gaussian step(const RbfPolicy& policy, const Gaussian& state, Tape* tape = nullptr) const;
 
   /// Vector-Jacobian product of step(), exact.
   /// @param d_next        dJ/dm', dJ/ds'
-  /// @param d_parameters  (optional) dJ/d(parameters of the policy) is ADDED to it
+  /// @param d_parameters  dJ/d(parameters of the policy) is ADDED to it
   /// @return              dJ/dm, dJ/ds (symmetric)
-  Gaussian backward(const SquashedPolicy& policy, const Tape& tape, const Gaussian& d_next,
+  Gaussian backward(const RbfPolicy& policy, const Tape& tape, const Gaussian& d_next,
                     Eigen::VectorXd* d_parameters) const;
 
  private:
@@ -65,7 +61,7 @@ class Propagation {
   int state_dim_;
   Augmentation features_;
   GpMoments dynamics_;
-  PropagationOptions options_;
+  bool noisy_policy_input_;
   Eigen::VectorXd measurement_variance_;  // variance added at the input of the policy [D]
 };
 
@@ -78,7 +74,7 @@ class LongTermCost {
   /// @param policy         must outlive this object; evaluate() sets its parameters
   /// @param initial_state  p(x_0), finite
   /// @param horizon        H >= 1, number of steps
-  LongTermCost(Propagation dynamics, StateCost cost, SquashedPolicy* policy, Gaussian initial_state,
+  LongTermCost(Propagation dynamics, StateCost cost, RbfPolicy* policy, Gaussian initial_state,
                int horizon);
 
   /// @param parameters  theta, the parameters of the policy
@@ -96,15 +92,12 @@ class LongTermCost {
   std::vector<double> costStandardDeviations() const;
 
  private:
-  bool predict(bool record);
-
   Propagation dynamics_;
   StateCost cost_;
-  SquashedPolicy* policy_;
+  RbfPolicy* policy_;
   int horizon_;
   std::vector<Gaussian> states_;
   std::vector<double> costs_;
-  std::vector<Propagation::Tape> tapes_;
 };
 
 }  // namespace ddm::pilco

@@ -5,10 +5,14 @@
 #include <ddm_common/option_checks.h>
 
 #include <Eigen/Core>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
 namespace ddm::pilco {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// A Gaussian N(mean, covariance).
 struct Gaussian {

@@ -195,14 +195,15 @@ pilco::Gaussian startDistribution(const Eigen::MatrixXd& X, const std::vector<Se
 
 }  // namespace
 
-std::unique_ptr<Observation> observeTrueState(const Plant& plant) {
+std::unique_ptr<Observation> observeTrueState(const Configuration& /*all*/, const Plant& plant) {
   return std::make_unique<TrueStateObservation>(plant);
 }
-std::unique_ptr<Observation> observeFeatures(const ModelConfig& model) {
-  return std::make_unique<FeatureObservation>(model);
+std::unique_ptr<Observation> observeFeatures(const Configuration& all, const Plant& /*plant*/) {
+  return std::make_unique<FeatureObservation>(all.model);
 }
-std::unique_ptr<Observation> observePrincipalComponents(const ModelConfig& model) {
-  return std::make_unique<PcaObservation>(model.model);
+std::unique_ptr<Observation> observePrincipalComponents(const Configuration& all,
+                                                        const Plant& /*plant*/) {
+  return std::make_unique<PcaObservation>(all.model.model);
 }
 
 PilcoTask imageTask(const Eigen::MatrixXd& X, const std::vector<Segment>& segments,

@@ -78,16 +78,17 @@ class Observation {
 /// @param plant  the controlled plant; must outlive the observation
 /// @throws std::invalid_argument if the plant is not one joint with angle and rate, or if its goal
 ///         is not the upright position pi
-std::unique_ptr<Observation> observeTrueState(const Plant& plant);
+std::unique_ptr<Observation> observeTrueState(const Configuration& all, const Plant& plant);
 
 /// x = z = g^-1(y), the features of one image. The auto-encoder minimises V_R alone and is trained
 /// anew on all data after each trial.
 /// @throws std::invalid_argument if training/schedule trains more than the auto-encoder
-std::unique_ptr<Observation> observeFeatures(const ModelConfig& model);
+std::unique_ptr<Observation> observeFeatures(const Configuration& all, const Plant& plant);
 
 /// x = the first model/pca_dim PCA scores of one image (paper, Sec. 4.2: 20 scores). The PCA is
 /// computed anew after each trial.
-std::unique_ptr<Observation> observePrincipalComponents(const ModelConfig& model);
+std::unique_ptr<Observation> observePrincipalComponents(const Configuration& all,
+                                                        const Plant& plant);
 
 /// The task of an observation of images. The spread is the root mean square distance of all samples
 /// to their mean. (If x were the position of the tip of a pendulum that turns all the way round,

@@ -5,6 +5,7 @@
 #include <ddm_common/param_value.h>
 #include <ddm_common/plain_file.h>
 #include <ddm_common/random_stream.h>
+#include <ddm_common/yaml_text.h>
 #include <ddm_model/minimise.h>
 #include <ddm_model/per_motor.h>
 #include <ddm_sim/plant.h>
@@ -49,11 +50,94 @@ std::pair<Eigen::MatrixXd, Eigen::MatrixXd> transitions(const DataSet& data,
   return {inputs, targets};
 }
 
+/// Converts a matrix to the list of its entries by columns, with all digits.
+/// @throws std::runtime_error if the matrix is not finite, because matrixOf() would refuse it
+YAML::Node matrixToYaml(const Eigen::MatrixXd& matrix) {
+  if (!matrix.allFinite()) {
+    throw std::runtime_error(
+        "PILCO: the policy or the GPs that were found are not finite: check the bags, or lower "
+        "policy_search/max_iterations or gp/max_iterations");
+  }
+  return valueToYaml(std::vector<double>(matrix.data(), matrix.data() + matrix.size()));
+}
+
+/// Restores a matrix of matrixToYaml().
+/// @param cols  number of columns; Eigen::Dynamic: any number
+Eigen::MatrixXd matrixOf(const YAML::Node& memory, const std::string& key, Eigen::Index rows,
+                         Eigen::Index cols) {
+  std::vector<double> entries;
+  if (!memory[key].IsDefined() || !parseValue(memory[key], &entries)) {
+    throw std::runtime_error(key + " must be a list of numbers");
+  }
+  const auto size = static_cast<Eigen::Index>(entries.size());
+  if (cols == Eigen::Dynamic) cols = size / rows;
+  if (size != rows * cols) {
+    throw std::runtime_error(textOf(key, " must have ", rows, " x ", cols, " entries, got ", size));
+  }
+  const Eigen::MatrixXd out = Eigen::Map<const Eigen::MatrixXd>(entries.data(), rows, cols);
+  if (!out.allFinite()) throw std::runtime_error(key + " must be finite");
+  return out;
+}
+
+/// Draws the parameters of the first RBF policy. The centres are drawn from the features of p(x_0),
+/// which are approximated by a Gaussian; the targets are small random numbers; the length-scales
+/// are those of the task.
+/// @param features  features of the task's state
+Eigen::VectorXd drawFirstPolicy(const PilcoTask& task, const pilco::Augmentation& features,
+                                int num_centres, int torque_dim, std::mt19937_64* rng) {
+  constexpr double kTargetStd = 0.1;  // value of the published experiments
+  const auto drawNormal = [rng](Eigen::Index rows, Eigen::Index cols) {
+    std::normal_distribution<double> normal;
+    Eigen::MatrixXd out(rows, cols);
+    for (Eigen::Index i = 0; i < out.size(); ++i) out.data()[i] = normal(*rng);
+    return out;
+  };
+  const pilco::Moments start = features.predict(task.start);
+  // A square root of the covariance. A Cholesky factor may not exist, as the covariance may be
+  // singular.
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(start.covariance);
+  const Eigen::MatrixXd root =
+      solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  const Eigen::MatrixXd centres =
+      (root * drawNormal(start.mean.size(), num_centres)).colwise() + start.mean;
+  const Eigen::MatrixXd targets = kTargetStd * drawNormal(num_centres, torque_dim);
+  const Eigen::MatrixXd log_length_scales =
+      task.policy_length_scales.array().log().matrix().replicate(1, torque_dim);
+  return pilco::RbfPolicy::packParameters(log_length_scales, centres, targets);
+}
+
+/// Content of prediction.csv.
+/// @param names  of the entries of x
+/// @param dt     time step [s]
+std::string predictionCsv(const std::vector<std::string>& names, double dt,
+                          const pilco::LongTermCost& cost) {
+  std::vector<std::string> columns;
+  for (const std::string& name : names) {
+    for (const char* measure : {"_mean", "_std"}) columns.push_back(name + measure);
+  }
+  std::string text = csvLine("step", "time_s", columns, "cost_mean", "cost_std");
+  const std::vector<double> cost_std = cost.costStandardDeviations();
+  for (size_t step = 0; step < cost.states().size(); ++step) {
+    const pilco::Gaussian& state = cost.states()[step];
+    std::vector<std::string> cells;
+    for (Eigen::Index i = 0; i < state.mean.size(); ++i) {
+      cells.push_back(csvCell(state.mean[i]));
+      cells.push_back(csvCell(std::sqrt(std::max(0.0, state.covariance(i, i)))));
+    }
+    const auto of_step = [step](const std::vector<double>& values) {
+      return step == 0 ? std::string() : csvCell(values[step - 1]);
+    };
+    text += csvLine(step, static_cast<double>(step) * dt, cells, of_step(cost.costs()),
+                    of_step(cost_std));
+  }
+  return text;
+}
+
 /// The policy of PILCO on an observation: u = policy(features of x).
 class PilcoPolicy : public Policy {
  public:
-  PilcoPolicy(std::shared_ptr<Observation> observation,
-              std::shared_ptr<pilco::SquashedPolicy> policy, pilco::Augmentation features)
+  PilcoPolicy(std::shared_ptr<Observation> observation, std::shared_ptr<pilco::RbfPolicy> policy,
+              pilco::Augmentation features)
       : observation_(std::move(observation)),
         policy_(std::move(policy)),
         features_(std::move(features)) {}
@@ -73,7 +157,7 @@ class PilcoPolicy : public Policy {
 
  private:
   std::shared_ptr<Observation> observation_;
-  std::shared_ptr<pilco::SquashedPolicy> policy_;
+  std::shared_ptr<pilco::RbfPolicy> policy_;
   pilco::Augmentation features_;
   Eigen::VectorXd x_;
 };
@@ -93,12 +177,9 @@ YAML::Node readBlocks(ParamReader* reader) {
   return out;
 }
 
-using MakeObservation =
-    std::function<std::unique_ptr<Observation>(const Configuration&, const Plant&)>;
-
 MethodKind pilcoKind(const std::string& name, const std::string& about,
-                     const MakeObservation& make_observation) {
-  const auto make = [make_observation](const Configuration& all, const Plant& plant) {
+                     std::unique_ptr<Observation> (*observe)(const Configuration&, const Plant&)) {
+  const auto make = [observe](const Configuration& all, const Plant& plant) {
     pilco::require(
         !(all.camera.drop_rate > 0.0),
         "camera/drop_rate must be 0 with PILCO, which takes a segment of its data without "
@@ -106,16 +187,22 @@ MethodKind pilcoKind(const std::string& name, const std::string& about,
         all.camera.drop_rate);
     ParamReader reader(all.method_blocks);
     const pilco::PilcoConfig config = readConfig(&reader);
-    return std::make_unique<PilcoMethod>(all, config, make_observation(all, plant));
+    return std::make_unique<PilcoMethod>(all, config, observe(all, plant));
   };
   return {name, "PILCO on " + about, readBlocks, make};
 }
 
 }  // namespace
 
+/// Where the next training starts: the latest policy and the latest optimum of the GPs.
+struct PilcoMethod::Memory {
+  Eigen::VectorXd policy;     ///< parameters of the policy; empty if there is none yet
+  pilco::GpLearnerState gps;  ///< empty if there is none yet
+};
+
 /// Inputs and statistics of one training.
 struct PilcoMethod::Training {
-  PilcoMemory memory;
+  Memory memory;
   std::mt19937_64 rng;
   PhaseCallback progress;
   YAML::Node report{YAML::NodeType::Map};
@@ -131,26 +218,45 @@ PilcoMethod::PilcoMethod(const Configuration& configuration, const pilco::PilcoC
 TrainingOutcome PilcoMethod::train(const std::vector<std::string>& bags, const TrialId& id,
                                    const PhaseCallback& progress) {
   const Clock::time_point start = Clock::now();
-  Training training{lastMemory(bags), randomStream(id, StreamRole::kPolicySearch), progress};
   const DataSet data = bags_.read(bags);
   const ObservedData observed = observation_->learn(bags, data, id);
   makePolicy(observed, data.torqueDim());
+  Training training{lastMemory(bags), randomStream(id, StreamRole::kPolicySearch), progress};
   pilco::Propagation dynamics = learnDynamics(data, observed, &training);
   const pilco::LongTermCost cost = improvePolicy(std::move(dynamics), observed.task, &training);
-  writeMemory(training.memory, &training.report);
+  training.report["policy"] = matrixToYaml(training.memory.policy);
+  training.report["hyperparameters"] = matrixToYaml(training.memory.gps.hyperparameters);
+  training.report["inducing"] = matrixToYaml(training.memory.gps.inducing);
 
   TrainingOutcome outcome;
   outcome.files = observation_->files();
   outcome.files[kMemoryFile] = YAML::Dump(training.report) + "\n";
-  outcome.files["prediction.csv"] = predictionCsv(cost);
+  outcome.files["prediction.csv"] =
+      predictionCsv(observation_->names(), configuration_.plant_info.dt, cost);
   outcome.frames = static_cast<std::uint32_t>(data.numFrames());
   outcome.evaluations = training.report["evaluations"].as<std::uint32_t>();
   outcome.seconds = secondsSince(start);
   return outcome;
 }
 
+/// @throws std::runtime_error with path and reason if the file is damaged or does not fit policy_
+PilcoMethod::Memory PilcoMethod::readMemory(const std::string& file) const {
+  const std::string text = readFile(file);
+  try {
+    const YAML::Node root = parseYaml(text, file);
+    if (!root.IsMap()) throw std::runtime_error("must be a map");
+    const int gp_inputs = policy_->inputDim() + policy_->outputDim();
+    return {matrixOf(root, "policy", policy_->parameters().size(), 1),
+            {matrixOf(root, "hyperparameters", gp_inputs + 2, features_->inputDim()),
+             matrixOf(root, "inducing", gp_inputs, Eigen::Dynamic)}};
+  } catch (const std::exception& e) {
+    throw std::runtime_error(file + ": " + e.what() +
+                             ": PILCO goes on from this file, so use another run folder");
+  }
+}
+
 /// Reads the memory of the previous training, which is in the folder of the last trial but one.
-PilcoMemory PilcoMethod::lastMemory(const std::vector<std::string>& bags) const {
+PilcoMethod::Memory PilcoMethod::lastMemory(const std::vector<std::string>& bags) const {
   const size_t last_two_trials = 2 * static_cast<size_t>(configuration_.trial.episodes);
   if (bags.size() < last_two_trials || !observation_->keepsCoordinates()) return {};
   const boost::filesystem::path bag = bags[bags.size() - last_two_trials];
@@ -161,26 +267,17 @@ bool PilcoMethod::resume(const std::string& folder, const std::vector<std::strin
                          const TrialId& id) {
   const std::string file = folder + "/" + kMemoryFile;
   if (!boost::filesystem::exists(file)) return false;
-  const PilcoMemory memory = readMemory(file);
   const DataSet data = bags_.read(bags);
   makePolicy(observation_->resume(folder, bags, data, id), data.torqueDim());
-  requireFit(memory);
-  policy_->setParameters(memory.policy);
+  policy_->setParameters(readMemory(file).policy);
   return true;
 }
 
 void PilcoMethod::makePolicy(const ObservedData& observed, int torque_dim) {
   features_ = pilco::replaceAngles(static_cast<int>(observed.X.rows()), observed.task.angles);
-  policy_ = std::make_shared<pilco::SquashedPolicy>(
-      pilco::RbfPolicy(features_->outputDim(), torque_dim, pilco_.pilco.num_centres),
+  policy_ = std::make_shared<pilco::RbfPolicy>(
+      features_->outputDim(), pilco_.pilco.num_centres,
       perMotor(configuration_.mpc.max_torque, torque_dim, "mpc/max_torque"));
-}
-
-void PilcoMethod::requireFit(const PilcoMemory& memory) const {
-  const Eigen::Index count = policy_->parameters().size();
-  if (memory.policy.size() == count) return;
-  throw std::runtime_error(textOf(memory.file, ": policy must have ", count, " parameters, got ",
-                                  memory.policy.size(), ": use another run folder"));
 }
 
 pilco::Propagation PilcoMethod::learnDynamics(const DataSet& data, const ObservedData& observed,
@@ -194,12 +291,12 @@ pilco::Propagation PilcoMethod::learnDynamics(const DataSet& data, const Observe
   };
   const pilco::GpFit fit = pilco::learnGp(pilco_.gp, pilco_.sparse_gp, inputs, targets,
                                           &training->rng, &training->memory.gps, count);
-  if (!fit.ok) throw std::runtime_error("PILCO: the GPs could not be trained: " + fit.message);
+  if (!fit.ok()) throw std::runtime_error("PILCO: the GPs could not be trained: " + fit.message);
   training->report["points"] = static_cast<int>(inputs.cols());
   training->report["sparse"] = inputs.cols() > pilco_.sparse_gp.max_points;
   training->report["gp_s"] = valueToYaml(secondsSince(start));
   training->report["gp_message"] = fit.message;
-  return pilco::Propagation(fit.model, {observed.task.angles, observed.task.noisy});
+  return pilco::Propagation(fit.model, observed.task.angles, observed.task.noisy);
 }
 
 /// Searches the policy and sets policy_. If the cost of the last policy is not finite under the new
@@ -216,7 +313,6 @@ pilco::LongTermCost PilcoMethod::improvePolicy(pilco::Propagation dynamics, cons
   };
   Eigen::VectorXd& parameters = training->memory.policy;
   if (parameters.size() == 0) parameters = drawStart();
-  requireFit(training->memory);
   pilco::LongTermCost cost(std::move(dynamics), task.cost, policy_.get(), task.start,
                            pilco_.pilco.horizon);
   int evaluations = 0;
@@ -260,67 +356,16 @@ pilco::LongTermCost PilcoMethod::improvePolicy(pilco::Propagation dynamics, cons
   return cost;
 }
 
-std::string PilcoMethod::predictionCsv(const pilco::LongTermCost& cost) const {
-  std::vector<std::string> columns;
-  for (const std::string& name : observation_->names()) {
-    for (const char* measure : {"_mean", "_std"}) columns.push_back(name + measure);
-  }
-  std::string text = csvLine("step", "time_s", columns, "cost_mean", "cost_std");
-  const std::vector<double> cost_std = cost.costStandardDeviations();
-  for (size_t step = 0; step < cost.states().size(); ++step) {
-    const pilco::Gaussian& state = cost.states()[step];
-    std::vector<std::string> cells;
-    for (Eigen::Index i = 0; i < state.mean.size(); ++i) {
-      cells.push_back(csvCell(state.mean[i]));
-      cells.push_back(csvCell(std::sqrt(std::max(0.0, state.covariance(i, i)))));
-    }
-    const auto of_step = [step](const std::vector<double>& values) {
-      return step == 0 ? std::string() : csvCell(values[step - 1]);
-    };
-    text += csvLine(step, static_cast<double>(step) * configuration_.plant_info.dt, cells,
-                    of_step(cost.costs()), of_step(cost_std));
-  }
-  return text;
-}
-
 std::shared_ptr<Policy> PilcoMethod::policy() const {
   if (policy_ == nullptr) return nullptr;
   return std::make_shared<PilcoPolicy>(observation_, policy_, *features_);
 }
 
-Eigen::VectorXd drawFirstPolicy(const PilcoTask& task, const pilco::Augmentation& features,
-                                int num_centres, int torque_dim, std::mt19937_64* rng) {
-  constexpr double kTargetStd = 0.1;  // value of the published experiments
-  const auto drawNormal = [rng](Eigen::Index rows, Eigen::Index cols) {
-    std::normal_distribution<double> normal;
-    Eigen::MatrixXd out(rows, cols);
-    for (Eigen::Index i = 0; i < out.size(); ++i) out.data()[i] = normal(*rng);
-    return out;
-  };
-  const pilco::Moments start = features.predict(task.start);
-  // A square root of the covariance. A Cholesky factor may not exist, as the covariance may be
-  // singular.
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(start.covariance);
-  const Eigen::MatrixXd root =
-      solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
-  const Eigen::MatrixXd centres =
-      (root * drawNormal(start.mean.size(), num_centres)).colwise() + start.mean;
-  const Eigen::MatrixXd targets = kTargetStd * drawNormal(num_centres, torque_dim);
-  const Eigen::MatrixXd log_length_scales =
-      task.policy_length_scales.array().log().matrix().replicate(1, torque_dim);
-  return pilco::RbfPolicy::packParameters(log_length_scales, centres, targets);
-}
-
 std::vector<MethodKind> pilcoMethods() {
-  return {
-      pilcoKind("pilco_state", "the true state",
-                [](const Configuration&, const Plant& plant) { return observeTrueState(plant); }),
-      pilcoKind("pilco_features", "features of an auto-encoder that is trained alone",
-                [](const Configuration& all, const Plant&) { return observeFeatures(all.model); }),
-      pilcoKind("pilco_pca", "principal components of the image",
-                [](const Configuration& all, const Plant&) {
-                  return observePrincipalComponents(all.model);
-                })};
+  return {pilcoKind("pilco_state", "the true state", observeTrueState),
+          pilcoKind("pilco_features", "features of an auto-encoder that is trained alone",
+                    observeFeatures),
+          pilcoKind("pilco_pca", "principal components of the image", observePrincipalComponents)};
 }
 
 }  // namespace ddm

@@ -3,7 +3,6 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -12,10 +11,6 @@
 
 namespace ddm::pilco {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kLogTwoPi = 1.8378770664093453;
 
 /// Matrices of one output. B = L M L^T with Kmm = L L^T, M = I + V diag(lambda)^-1 V^T and
 /// V = L^-1 Kmn. M is much better conditioned than B.
@@ -111,38 +106,6 @@ Eigen::MatrixXd columnsOf(const Eigen::MatrixXd& matrix, const std::vector<Eigen
   return out;
 }
 
-/// Trains the full GP. If a sparse GP will replace it, only its hyper-parameters are needed.
-GpFit trainFull(const GpTrainingOptions& training, bool sparse, const Hyperparameters* start,
-                const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets, std::mt19937_64* rng,
-                const std::function<void()>& on_evaluation) {
-  const int count = training.training_points;
-  if (count == 0 || inputs.cols() <= count) {
-    return trainGp(inputs, targets, training.max_iterations, start, on_evaluation);
-  }
-  const std::vector<Eigen::Index> drawn = randomIndices(inputs.cols(), count, rng);
-  GpFit few = trainGp(columnsOf(inputs, drawn), columnsOf(targets.transpose(), drawn).transpose(),
-                      training.max_iterations, start, on_evaluation);
-  if (!few.ok || sparse) return few;
-  GpFit full = makeGpModel(inputs, targets, few.model.hyperparameters);
-  full.outputs = few.outputs;
-  if (full.ok) full.message = few.message;
-  return full;
-}
-
-/// Checks the sizes of a state, which may come from a file.
-/// @throws std::invalid_argument if a size does not fit
-void requireFit(const GpLearnerState& state, Eigen::Index input_dim, Eigen::Index output_dim) {
-  const Eigen::MatrixXd& scales = state.hyperparameters.log_length_scales;
-  require(scales.rows() == input_dim && scales.cols() == output_dim &&
-              state.hyperparameters.log_signal_std.size() == output_dim &&
-              state.hyperparameters.log_noise_std.size() == output_dim,
-          "the hyper-parameters must be for ", input_dim, " inputs and ", output_dim,
-          " outputs, got length-scales for ", scales.rows(), " and ", scales.cols());
-  require(state.inducing.size() == 0 || state.inducing.rows() == input_dim,
-          "inducing inputs must be points of ", input_dim, " entries, got ", state.inducing.cols(),
-          " of ", state.inducing.rows());
-}
-
 }  // namespace
 
 double sparseNegativeLogLikelihood(const Eigen::MatrixXd& inducing, const Eigen::MatrixXd& inputs,
@@ -153,8 +116,7 @@ double sparseNegativeLogLikelihood(const Eigen::MatrixXd& inducing, const Eigen:
   if (d_inducing != nullptr) d_inducing->setZero(inducing.rows(), inducing.cols());
   double sum = 0.0;
   for (int a = 0; a < targets.cols(); ++a) {
-    sum +=
-        outputLikelihood(inducing, inputs, targets.col(a), thetaOf(hyperparameters, a), d_inducing);
+    sum += outputLikelihood(inducing, inputs, targets.col(a), hyperparameters.col(a), d_inducing);
   }
   if (std::isfinite(sum)) return sum;
   if (d_inducing != nullptr) d_inducing->setConstant(kNaN);
@@ -167,24 +129,21 @@ GpFit makeSparseGpModel(const Eigen::MatrixXd& inducing, const Eigen::MatrixXd& 
   const Eigen::Index m = inducing.cols();
   const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(m, m);
   GpFit fit;
-  fit.model.inputs = inducing;
-  fit.model.hyperparameters = hyperparameters;
-  fit.model.beta.resize(m, targets.cols());
+  GpModel model{inducing, hyperparameters, Eigen::MatrixXd(m, targets.cols()), {}};
   for (int a = 0; a < targets.cols(); ++a) {
-    const Fitc fitc(inducing, inputs, thetaOf(hyperparameters, a));
+    const Fitc fitc(inducing, inputs, hyperparameters.col(a));
     if (!fitc.positive_definite) {
-      fit.model = GpModel();
       fit.message = textOf("the sparse covariance of output ", a + 1,
                            " is not positive definite: its noise std must be larger");
       return fit;
     }
-    fit.model.beta.col(a) = fitc.beta(targets.col(a));
+    model.beta.col(a) = fitc.beta(targets.col(a));
     // Kmm^-1 - B^-1 = L^-T (I - M^-1) L^-1
     const Eigen::MatrixXd half = fitc.backsolve(identity - fitc.m.solve(identity));
     const Eigen::MatrixXd inverse = fitc.backsolve(half.transpose());
-    fit.model.inverse.push_back(0.5 * (inverse + inverse.transpose()));
+    model.inverse.push_back(0.5 * (inverse + inverse.transpose()));
   }
-  fit.ok = true;
+  fit.model = std::move(model);
   return fit;
 }
 
@@ -215,7 +174,7 @@ GpFit trainSparseGp(const Eigen::MatrixXd& start, const Eigen::MatrixXd& inputs,
       Eigen::Map<const Eigen::MatrixXd>(minimum.x.data(), start.rows(), start.cols());
   GpFit fit = makeSparseGpModel(inducing, inputs, targets, hyperparameters);
   fit.outputs.push_back(minimum);
-  if (fit.ok && !minimum.improved() && !minimum.converged()) {
+  if (fit.ok() && !minimum.improved() && !minimum.converged()) {
     fit.message = "inducing inputs kept at the start, " + minimum.message;
   }
   return fit;
@@ -224,28 +183,35 @@ GpFit trainSparseGp(const Eigen::MatrixXd& start, const Eigen::MatrixXd& inputs,
 GpFit learnGp(const GpTrainingOptions& training, const SparseGpOptions& sparse,
               const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets, std::mt19937_64* rng,
               GpLearnerState* state, const std::function<void()>& on_evaluation) {
-  const bool first = state->hyperparameters.log_signal_std.size() == 0;
-  if (!first) requireFit(*state, inputs.rows(), targets.cols());
+  eigen_assert(state->hyperparameters.size() == 0 ||
+               (state->hyperparameters.rows() == inputs.rows() + 2 &&
+                state->hyperparameters.cols() == targets.cols()));
   const bool use_sparse = inputs.cols() > sparse.max_points;
-  GpFit full = trainFull(training, use_sparse, first ? nullptr : &state->hyperparameters, inputs,
-                         targets, rng, on_evaluation);
-  if (!full.ok) return full;
-  state->hyperparameters = full.model.hyperparameters;
-  if (!use_sparse) return full;
+  const int count = training.training_points;
+  const bool use_subset = count > 0 && inputs.cols() > count;
+  Eigen::MatrixXd X = inputs, Y = targets;  // from which the hyper-parameters are learned
+  if (use_subset) {
+    const std::vector<Eigen::Index> drawn = randomIndices(inputs.cols(), count, rng);
+    X = columnsOf(inputs, drawn);
+    Y = columnsOf(targets.transpose(), drawn).transpose();
+  }
+  GpFit fit = trainGp(X, Y, training.max_iterations, state->hyperparameters, on_evaluation);
+  if (!fit.ok()) return fit;
+  const Hyperparameters hyperparameters = fit.model.hyperparameters;
+  state->hyperparameters = hyperparameters;
+  if (!use_sparse) {
+    if (use_subset) fit.add(makeGpModel(inputs, targets, hyperparameters));
+    return fit;
+  }
 
-  const bool from_subset = state->inducing.size() == 0;
+  const bool first = state->inducing.size() == 0;
   const Eigen::MatrixXd start =
-      from_subset ? columnsOf(inputs, randomIndices(inputs.cols(), sparse.max_points, rng))
-                  : state->inducing;
-  GpFit fit =
-      trainSparseGp(start, inputs, targets, full.model.hyperparameters,
-                    from_subset ? sparse.first_iterations : sparse.max_iterations, on_evaluation);
-  if (fit.ok) state->inducing = fit.model.inputs;
-  full.ok = fit.ok;
-  full.model = std::move(fit.model);
-  full.outputs.insert(full.outputs.end(), fit.outputs.begin(), fit.outputs.end());
-  full.addMessage(fit.message);
-  return full;
+      first ? columnsOf(inputs, randomIndices(inputs.cols(), sparse.max_points, rng))
+            : state->inducing;
+  fit.add(trainSparseGp(start, inputs, targets, hyperparameters,
+                        first ? sparse.first_iterations : sparse.max_iterations, on_evaluation));
+  if (fit.ok()) state->inducing = fit.model.inputs;
+  return fit;
 }
 
 }  // namespace ddm::pilco

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <limits>
 #include <random>
-#include <utility>
 
 #include "random_problems.h"
 
@@ -17,34 +16,33 @@ namespace {
 
 using ::ddm::testing::vectorOf;
 
-SquashedPolicy randomPolicy(int dim, int controls, const Eigen::VectorXd& max_control,
-                            std::mt19937_64& random) {
-  RbfPolicy rbf(dim, controls, 5);
-  rbf.setParameters(RbfPolicy::packParameters(normalMatrix(dim, controls, 0.2, random),
-                                              normalMatrix(dim, 5, 1.0, random),
-                                              normalMatrix(5, controls, 0.3, random)));
-  return SquashedPolicy(std::move(rbf), max_control);
+RbfPolicy randomPolicy(int dim, const Eigen::VectorXd& max_control, std::mt19937_64& random) {
+  RbfPolicy policy(dim, 5, max_control);
+  const int controls = policy.outputDim();
+  policy.setParameters(RbfPolicy::packParameters(normalMatrix(dim, controls, 0.2, random),
+                                                 normalMatrix(dim, 5, 1.0, random),
+                                                 normalMatrix(5, controls, 0.3, random)));
+  return policy;
 }
 
 /// A pendulum with little data: the state is [dphi, phi], and there is one torque.
 struct Pendulum {
-  explicit Pendulum(unsigned seed, bool noisy = false) : random(seed) {
+  explicit Pendulum(unsigned seed, bool noisy = false) : random(seed), noisy(noisy) {
     model = randomGp(4, 2, 12, true, random);
     model.beta *= 0.3;
-    options.angles = {1};
-    options.noisy_policy_input = noisy;
-    policy = randomPolicy(3, 1, vectorOf({2.0}), random);
+    policy = randomPolicy(3, vectorOf({2.0}), random);
     start = randomGaussian(2, 2, 0.2, random);
   }
 
+  Propagation propagation() const { return Propagation(model, {1}, noisy); }
   LongTermCost cost(int horizon) {
-    return LongTermCost(Propagation(model, options), pendulumCost(), &policy, start, horizon);
+    return LongTermCost(propagation(), pendulumCost(), &policy, start, horizon);
   }
 
   std::mt19937_64 random;
+  bool noisy;
   GpModel model;
-  PropagationOptions options;
-  SquashedPolicy policy{RbfPolicy(3, 1, 5), vectorOf({2.0})};
+  RbfPolicy policy{3, 5, vectorOf({2.0})};
   Gaussian start;
 };
 
@@ -63,21 +61,18 @@ TEST(Propagation, HasTheMomentsOfSamplesWhereAllIsGaussianAlsoIfThePolicySeesNoi
     std::mt19937_64 random(2);
     GpModel model = randomGp(3, 2, 8, true, random);
     const Eigen::VectorXd noise_std = vectorOf({0.5, 0.8});
-    model.hyperparameters.log_noise_std = noise_std.array().log();
-    PropagationOptions options;
-    options.noisy_policy_input = noisy;
+    model.hyperparameters.row(4) = noise_std.array().log().matrix().transpose();
     // Two wide basis functions of opposite signs are linear near the state. The squashing is far
     // from its bound.
-    RbfPolicy rbf(2, 1, 2);
     Eigen::MatrixXd centres(2, 2);
     centres << 60.0, -60.0, -40.0, 40.0;
     const double kBound = 100.0, kScale = std::log(60.0);
-    rbf.setParameters(
+    RbfPolicy policy(2, 2, vectorOf({kBound}));
+    policy.setParameters(
         RbfPolicy::packParameters(vectorOf({kScale, kScale}), centres, vectorOf({0.2, -0.2})));
-    const SquashedPolicy policy(std::move(rbf), vectorOf({kBound}));
     const Gaussian state = randomGaussian(2, 2, 0.6, random);
     Propagation::Tape tape;
-    const Gaussian next = Propagation(model, options).step(policy, state, &tape);
+    const Gaussian next = Propagation(model, {}, noisy).step(policy, state, &tape);
     // cov(x, x') = s + s (gain from x to delta, directly and through the control)
     const Eigen::MatrixXd gain = Eigen::MatrixXd::Identity(2, 2) + tape.delta.gain.topRows(2) +
                                  tape.control.gain * tape.delta.gain.bottomRows(1);
@@ -103,7 +98,7 @@ TEST(LongTermCost, IsTheSumOverTheStepsWithoutTheStart) {
   Pendulum pendulum(6);
   LongTermCost cost = pendulum.cost(3);
   const double J = cost.evaluate(pendulum.policy.parameters());
-  const Propagation propagation(pendulum.model, pendulum.options);
+  const Propagation propagation = pendulum.propagation();
   Gaussian state = pendulum.start;
   double expected = 0.0;
   ASSERT_EQ(cost.states().size(), 4u);
@@ -129,10 +124,10 @@ TEST(LongTermCost, GradientMatchesDifferencesWithoutAnglesAndForTwoControls) {
   std::mt19937_64 random(9);
   GpModel model = randomGp(5, 3, 10, true, random);
   model.beta *= 0.3;
-  SquashedPolicy policy = randomPolicy(3, 2, vectorOf({1.0, 2.0}), random);
+  RbfPolicy policy = randomPolicy(3, vectorOf({1.0, 2.0}), random);
   const StateCost state_cost(replaceAngles(3, {}), vectorOf({0.5, 0.0, -0.5}),
                              Eigen::MatrixXd::Identity(3, 3));
-  LongTermCost cost(Propagation(model, PropagationOptions()), state_cost, &policy,
+  LongTermCost cost(Propagation(model, {}, false), state_cost, &policy,
                     randomGaussian(3, 3, 0.2, random), 6);
   EXPECT_TRUE(gradientMatches(&cost, policy.parameters()));
 }

@@ -45,7 +45,7 @@ class TrueStateTest : public ::testing::Test {
 };
 
 TEST_F(TrueStateTest, LearningMeetsTheMeasurementsThatThePolicyActedOn) {
-  const auto acting = observeTrueState(*plant_);
+  const auto acting = observeTrueState({}, *plant_);
   const TrialId id{5, 0, false};
   std::vector<Eigen::VectorXd> states, measured;
   std::vector<double> times;
@@ -61,7 +61,7 @@ TEST_F(TrueStateTest, LearningMeetsTheMeasurementsThatThePolicyActedOn) {
   writeText(scratch_.file("trajectory.csv"),
             formatTrajectoryCsv(times, states, plant_->info().state_names));
   const Eigen::MatrixXd X =
-      observeTrueState(*plant_)->learn({scratch_.file("trial.bag")}, data, id).X;
+      observeTrueState({}, *plant_)->learn({scratch_.file("trial.bag")}, data, id).X;
   ASSERT_EQ(X.cols(), 20);
   for (int t = 0; t < 20; ++t) EXPECT_EQ(X.col(t), measured[static_cast<size_t>(t)]) << t;
   EXPECT_NE(X(0, 19), states[19][1]);
@@ -71,7 +71,7 @@ TEST_F(TrueStateTest, LearningMeetsTheMeasurementsThatThePolicyActedOn) {
 TEST_F(TrueStateTest, FramesThatDoNotFitTheBagBesideThemAreRefusedWithTheFile) {
   DataSet data(2, 1);  // two trials of 3 samples
   for (int t = 0; t < 6; ++t) data.append(Grey(4, 0), Eigen::VectorXd::Zero(1), t % 3 == 0);
-  const auto observation = observeTrueState(*plant_);
+  const auto observation = observeTrueState({}, *plant_);
   std::vector<std::string> bags;
   const auto write = [&](const std::string& trial, size_t frames) {
     fs::create_directories(scratch_.file(trial));
@@ -93,7 +93,7 @@ TEST_F(TrueStateTest, FramesThatDoNotFitTheBagBesideThemAreRefusedWithTheFile) {
 }
 
 PilcoTask trueStateTask(const Plant& plant) {
-  return observeTrueState(plant)->learn({}, DataSet(2, 1), TrialId()).task;
+  return observeTrueState({}, plant)->learn({}, DataSet(2, 1), TrialId()).task;
 }
 
 TEST_F(TrueStateTest, TheTaskIsUprightWithinTheLengthOfTheRodAlsoForAPlugin) {
@@ -121,7 +121,7 @@ TEST_F(TrueStateTest, APlantThatIsNoPendulumIsRefused) {
   two_joints.info.state_names = {"shoulder_rad", "elbow_rad"};
   for (const testing::ToyPlant::Traits& traits : {length, two_joints, armTo(0.0)}) {
     const std::unique_ptr<Plant> plant = makePlant(testing::ToyMaker(traits));
-    EXPECT_TRUE(throwsNaming<std::invalid_argument>([&] { observeTrueState(*plant); },
+    EXPECT_TRUE(throwsNaming<std::invalid_argument>([&] { observeTrueState({}, *plant); },
                                                     {"joint(s)", "pilco_features"}));
   }
 }
@@ -150,12 +150,12 @@ void expectConsistent(Observation* observation, const DataSet& data) {
 TEST(ImageObservations, LearnFromWhatTheyObserveAndTakeTheGoalFromItsImage) {
   const std::unique_ptr<Plant> plant = pendulum();
   const DataSet data = imagesOf(*plant);
-  ModelConfig config;
-  config.model.pca_dim = 5;
-  config.training.max_iterations = 30;
-  config.training.schedule = "v_r_only";
-  expectConsistent(observeFeatures(config).get(), data);
-  expectConsistent(observePrincipalComponents(config).get(), data);
+  Configuration all;
+  all.model.model.pca_dim = 5;
+  all.model.training.max_iterations = 30;
+  all.model.training.schedule = "v_r_only";
+  expectConsistent(observeFeatures(all, *plant).get(), data);
+  expectConsistent(observePrincipalComponents(all, *plant).get(), data);
 }
 
 TEST(ImageTask, TakesGoalStartAndScaleFromTheData) {

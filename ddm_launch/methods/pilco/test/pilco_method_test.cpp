@@ -69,6 +69,16 @@ double numberAt(const std::string& row, size_t column) {
   return std::stod(columns.at(column));
 }
 
+/// Replaces the list of numbers `key` in a file of YAML.
+template <class Change>
+void changeList(const std::string& file, const std::string& key, const Change& change) {
+  YAML::Node root = YAML::LoadFile(file);
+  auto numbers = root[key].as<std::vector<double>>();
+  change(&numbers);
+  root[key] = numbers;
+  writeText(file, YAML::Dump(root));
+}
+
 class PilcoMethodTest : public ::testing::Test {
  protected:
   PilcoMethodTest() { silenceSolverLog(); }
@@ -126,12 +136,8 @@ TEST_F(PilcoMethodTest, ARunThatIsResumedGoesOnWithItsPolicyAndEndsLikeOneThatIs
       EXPECT_FALSE(textOf(whole + "/" + name).empty()) << name;
     }
     // resume() uses the policy of the file, and does not repeat the training.
-    const std::string memory = parts + "/trial_002/pilco.yaml";
-    YAML::Node changed = YAML::LoadFile(memory);
-    PilcoMemory other = readMemory(memory);
-    other.policy.setZero();
-    writeMemory(other, &changed);
-    writeText(memory, YAML::Dump(changed));
+    changeList(parts + "/trial_002/pilco.yaml", "policy",
+               [](std::vector<double>* policy) { policy->assign(policy->size(), 0.0); });
     resumed.experiment.trials = 3;
     resumed.trial.num_steps = testing::kToySteps;
     runSmall(resumed);
@@ -147,15 +153,13 @@ TEST_F(PilcoMethodTest, APolicyGoesOnFromTheLastOneWhereTheCoordinatesStay) {
     return YAML::LoadFile(folder("run") + "/trial_00" + std::to_string(trial) + "/pilco.yaml");
   };
   const std::string file = folder("run") + "/trial_001/pilco.yaml";
-  const PilcoMemory last = readMemory(file);
-  EXPECT_EQ(last.policy.size(), 3 + 4 * 3 + 4);
-  EXPECT_EQ(last.gps.inducing.cols(), 40);
+  EXPECT_EQ(report(1)["policy"].size(), 3u + 4u * 3u + 4u);
+  EXPECT_EQ(report(1)["hyperparameters"].size(), 6u * 2u);
+  EXPECT_EQ(report(1)["inducing"].size(), 4u * 40u);
   // With another initial policy, the training of trial 2 has another result.
-  PilcoMemory other = last;
-  other.policy *= 1.1;
-  YAML::Node changed(YAML::NodeType::Map);
-  writeMemory(other, &changed);
-  writeText(file, YAML::Dump(changed));
+  changeList(file, "policy", [](std::vector<double>* policy) {
+    for (double& parameter : *policy) parameter *= 1.1;
+  });
   InProcessDriver driver(all);
   std::vector<std::string> bags;
   for (int k = 0; k < 3; ++k) {
@@ -176,13 +180,13 @@ TEST_F(PilcoMethodTest, AMissingOrDamagedMemoryIsNamed) {
     bags.push_back(folder("run") + "/trial_00" + std::to_string(k) + "/trial.bag");
   }
   const auto train = [&] { InProcessDriver(all).train(bags, {7, 2, false}, [](double) {}); };
-  PilcoMemory short_policy = readMemory(file);
-  short_policy.policy.conservativeResize(2);
-  YAML::Node changed(YAML::NodeType::Map);
-  writeMemory(short_policy, &changed);
-  for (const std::string& text :
-       {std::string("policy: [[1, 2]]\n"), std::string("[]\n"), std::string("policy: 3\n"),
-        std::string("{"), YAML::Dump(changed)}) {
+  const std::string good = textOf(file);
+  for (const std::string key : {"policy", "hyperparameters", "inducing"}) {
+    writeText(file, good);
+    changeList(file, key, [](std::vector<double>* numbers) { numbers->pop_back(); });
+    EXPECT_TRUE(throwsNaming<std::runtime_error>(train, {file, key, "another run"}));
+  }
+  for (const std::string text : {"policy: [[1, 2]]\n", "[]\n", "policy: 3\n", "{"}) {
     writeText(file, text);
     EXPECT_TRUE(throwsNaming<std::runtime_error>(train, {file, "another run"})) << text;
   }

@@ -36,14 +36,16 @@ inline Gaussian randomGaussian(int dim, int rank, double scale, std::mt19937_64&
 inline GpModel randomGp(int dim, int outputs, int n, bool uncertain, std::mt19937_64& random) {
   GpModel model;
   model.inputs = normalMatrix(dim, n, 1.0, random);
-  model.hyperparameters.log_length_scales = normalMatrix(dim, outputs, 0.3, random);
-  model.hyperparameters.log_signal_std = normalMatrix(outputs, 1, 0.3, random);
-  model.hyperparameters.log_noise_std = Eigen::VectorXd::Constant(outputs, std::log(0.1));
+  const Eigen::MatrixXd log_scales = normalMatrix(dim, outputs, 0.3, random);
+  const Eigen::MatrixXd log_signal = normalMatrix(outputs, 1, 0.3, random);
+  model.hyperparameters.resize(dim + 2, outputs);
+  model.hyperparameters << log_scales, log_signal.transpose(),
+      Eigen::RowVectorXd::Constant(outputs, std::log(0.1));
   model.beta.resize(n, outputs);
   for (int a = 0; a < outputs; ++a) {
-    const Eigen::VectorXd scales = model.hyperparameters.log_length_scales.col(a).array().exp();
-    Eigen::MatrixXd A = squaredExponential(model.inputs, model.inputs, scales,
-                                           std::exp(model.hyperparameters.log_signal_std[a]));
+    Eigen::MatrixXd A =
+        squaredExponential(model.inputs, model.inputs, log_scales.col(a).array().exp().matrix(),
+                           std::exp(log_signal(a)));
     A.diagonal().array() += 0.01;
     const Eigen::LLT<Eigen::MatrixXd> llt(A);
     model.beta.col(a) = llt.solve(normalMatrix(n, 1, 1.0, random));
@@ -57,8 +59,9 @@ inline GpModel randomGp(int dim, int outputs, int n, bool uncertain, std::mt1993
 class GpSampler {
  public:
   GpSampler(GpModel model, std::mt19937_64* random) : model_(std::move(model)), random_(random) {
-    precisions_ = (-2.0 * model_.hyperparameters.log_length_scales.array()).exp();
-    signal_variances_ = (2.0 * model_.hyperparameters.log_signal_std.array()).exp();
+    const Hyperparameters& log_values = model_.hyperparameters;
+    precisions_ = (-2.0 * log_values.topRows(model_.inputDim()).array()).exp();
+    signal_variances_ = (2.0 * log_values.row(model_.inputDim()).transpose().array()).exp();
   }
 
   Eigen::VectorXd operator()(const Eigen::VectorXd& x) {

@@ -154,30 +154,14 @@ void compareJacobians(const Case& reference, const MomentFields& fields,
   }
 }
 
-/// The rows are log length-scales, log signal std and log noise std; there is one column per
-/// output.
-Hyperparameters hyperparameters(const Case& reference, const std::string& field) {
-  const Eigen::MatrixXd values = reference.matrix(field);
-  const Eigen::Index dim = values.rows() - 2;
-  return {values.topRows(dim), values.row(dim).transpose(), values.row(dim + 1).transpose()};
-}
-
-Eigen::MatrixXd toMatrix(const Hyperparameters& values) {
-  const Eigen::Index dim = values.log_length_scales.rows();
-  Eigen::MatrixXd out(dim + 2, values.log_signal_std.size());
-  out << values.log_length_scales, values.log_signal_std.transpose(),
-      values.log_noise_std.transpose();
-  return out;
-}
-
 GpModel usable(const GpFit& fit) {
-  if (!fit.ok) throw std::runtime_error("the GP cannot be used: " + fit.message);
+  if (!fit.ok()) throw std::runtime_error("the GP cannot be used: " + fit.message);
   return fit.model;
 }
 
 GpModel readModel(const Case& reference) {
   return usable(makeGpModel(reference.matrix("X").transpose(), reference.matrix("Y"),
-                            hyperparameters(reference, "loghyp")));
+                            reference.matrix("loghyp")));
 }
 
 void comparePrediction(const Case& reference, const GpModel& model) {
@@ -197,7 +181,7 @@ void checkSparseGpPredict(const Case& reference) {
   comparePrediction(
       reference,
       usable(makeSparseGpModel(reference.matrix("Z").transpose(), reference.matrix("X").transpose(),
-                               reference.matrix("Y"), hyperparameters(reference, "loghyp"))));
+                               reference.matrix("Y"), reference.matrix("loghyp"))));
 }
 
 /// The objective of the training for one output.
@@ -226,22 +210,21 @@ void checkLikelihood(const Case& reference) {
 /// Compares the field loghyp_init with the initial hyper-parameters, and trains from there.
 GpFit trainFromStart(const Case& reference) {
   const Eigen::MatrixXd inputs = reference.matrix("X").transpose(), targets = reference.matrix("Y");
-  const Hyperparameters start = hyperparameters(reference, "loghyp_init");
-  reference.compare("loghyp_init", toMatrix(initialHyperparameters(inputs, targets)),
-                    absolute(1e-9));
-  GpFit fit = trainGp(inputs, targets, GpTrainingOptions().max_iterations, &start);
+  const Hyperparameters start = reference.matrix("loghyp_init");
+  reference.compare("loghyp_init", initialHyperparameters(inputs, targets), absolute(1e-9));
+  GpFit fit = trainGp(inputs, targets, GpTrainingOptions().max_iterations, start);
   usable(fit);
   return fit;
 }
 
 void checkTraining(const Case& reference) {
   const Eigen::MatrixXd inputs = reference.matrix("X").transpose(), targets = reference.matrix("Y");
-  const Hyperparameters optimum = hyperparameters(reference, "loghyp");
+  const Hyperparameters optimum = reference.matrix("loghyp");
   const GpFit fit = trainFromStart(reference);
   const int outputs = static_cast<int>(targets.cols());
   Eigen::VectorXd plain(outputs), penalised(outputs), norm(outputs), trained(outputs);
   for (int a = 0; a < outputs; ++a) {
-    const Eigen::VectorXd theta = thetaOf(optimum, a);
+    const Eigen::VectorXd theta = optimum.col(a);
     Eigen::VectorXd gradient;
     plain[a] = negativeLogLikelihood(inputs, targets.col(a), theta);
     penalised[a] = objective(inputs, targets.col(a), theta, &gradient);
@@ -305,17 +288,18 @@ void checkSquashing(const Case& reference) {
   const int dim = static_cast<int>(input.mean.size());
   // selects the entries to squash
   const Eigen::MatrixXd pick = picking(readIndices(reference, dim), dim);
-  const Squashing squashing(reference.vector("maxU"));
+  const Eigen::VectorXd max_control = reference.vector("maxU");
   const Gaussian chosen = {pick * input.mean, pick * input.covariance * pick.transpose()};
-  Moments computed = squashing.predict(chosen);
+  Moments computed = squash(chosen, max_control);
   computed.gain = pick.transpose() * computed.gain;
   compareMoments(reference, kTrigonometric, computed);
-  compareJacobians(reference, kTrigonometric, "v", dim, squashing.dim(), [&](const Moments& seed) {
-    const Gaussian d_chosen =
-        squashing.backward(chosen, Moments{seed.mean, seed.covariance, pick * seed.gain});
-    return Gaussian{pick.transpose() * d_chosen.mean,
-                    pick.transpose() * d_chosen.covariance * pick};
-  });
+  compareJacobians(
+      reference, kTrigonometric, "v", dim, static_cast<int>(pick.rows()), [&](const Moments& seed) {
+        const Gaussian d_chosen =
+            squashBackward(chosen, max_control, {seed.mean, seed.covariance, pick * seed.gain});
+        return Gaussian{pick.transpose() * d_chosen.mean,
+                        pick.transpose() * d_chosen.covariance * pick};
+      });
 }
 
 /// Reads the parameters of an RBF policy from their parts.
@@ -325,29 +309,29 @@ Eigen::VectorXd readParameters(const Case& reference) {
                                    reference.matrix("targets"));
 }
 
-RbfPolicy readRbfPolicy(const Case& reference) {
-  const Eigen::MatrixXd centres = reference.matrix("centres"),
-                        targets = reference.matrix("targets");
-  RbfPolicy rbf(static_cast<int>(centres.cols()), static_cast<int>(targets.cols()),
-                static_cast<int>(centres.rows()));
-  rbf.setParameters(readParameters(reference));
-  return rbf;
+RbfPolicy readPolicy(const Case& reference) {
+  const Eigen::MatrixXd centres = reference.matrix("centres");
+  RbfPolicy policy(static_cast<int>(centres.cols()), static_cast<int>(centres.rows()),
+                   reference.vector("maxU"));
+  policy.setParameters(readParameters(reference));
+  return policy;
 }
 
 void checkPolicy(const Case& reference) {
   const Gaussian input = reference.gaussian("m", "s");
-  const Eigen::VectorXd max_control = reference.vector("maxU");
   if (reference.text("kind") == "conlin") {  // linear policies are not in the library
     const Eigen::MatrixXd w = reference.matrix("w");
     const Moments plain = {w * input.mean + reference.vector("b"),
                            w * input.covariance * w.transpose(), w.transpose()};
     compareMoments(reference, kPolicy, plain);
-    compareMoments(reference, kSquashed, Squashing(max_control).applyTo(plain));
+    Moments squashed = squash(marginal(plain), reference.vector("maxU"));
+    squashed.gain = plain.gain * squashed.gain;
+    compareMoments(reference, kSquashed, squashed);
     return;
   }
   ASSERT_EQ(reference.text("kind"), "congp");
-  compareMoments(reference, kPolicy, readRbfPolicy(reference).predict(input));
-  const SquashedPolicy policy(readRbfPolicy(reference), max_control);
+  const RbfPolicy policy = readPolicy(reference);
+  compareMoments(reference, kPolicy, policy.predictUnsquashed(input));
   compareMoments(reference, kSquashed, policy.predict(input));
   if (!reference.has("dM_sq_dlog_ls")) return;
   const Eigen::Index dim = policy.inputDim(), count = reference.matrix("centres").rows();
@@ -389,7 +373,7 @@ struct Scenario {
   double gravity;           ///< [m / s^2]
   double friction;          ///< [N m s / rad]
   double time_step;         ///< [s]
-  bool noisy_policy_input;  ///< see PropagationOptions
+  bool noisy_policy_input;  ///< see Propagation
 };
 
 Scenario readScenario(const Case& reference) {
@@ -413,32 +397,26 @@ void checkSimulation(const Case& reference) {
   reference.compare("x1", pendulum.state().reverse(), kState);
 }
 
-SquashedPolicy readSquashedPolicy(const Case& reference) {
-  return SquashedPolicy(readRbfPolicy(reference), reference.vector("maxU"));
-}
-
 Propagation readPropagation(const Case& reference) {
-  PropagationOptions options;
-  options.angles = {1};
-  options.noisy_policy_input = readScenario(reference).noisy_policy_input;
-  return Propagation(readModel(reference), options);
+  return Propagation(readModel(reference), {1}, readScenario(reference).noisy_policy_input);
 }
 
 void checkPropagation(const Case& reference) {
-  const SquashedPolicy policy = readSquashedPolicy(reference);
+  const RbfPolicy policy = readPolicy(reference);
   const Propagation propagation = readPropagation(reference);
   Propagation::Tape tape;
+  Eigen::VectorXd unused = policy.parameters();
   const Gaussian next = propagation.step(policy, reference.gaussian("m", "s"), &tape);
   reference.compare("m_next", next.mean, kState);
   reference.compare("s_next", next.covariance, kState);
   compareJacobians(
       reference, {{"M", relative(1e-9)}, {"S", relative(1e-9)}}, "s", 2, 2,
       [&](const Moments& seed) {
-        return propagation.backward(policy, tape, {seed.mean, seed.covariance}, nullptr);
+        return propagation.backward(policy, tape, {seed.mean, seed.covariance}, &unused);
       });
 }
 
-LongTermCost readLongTermCost(const Case& reference, SquashedPolicy* policy) {
+LongTermCost readLongTermCost(const Case& reference, RbfPolicy* policy) {
   reference.compare("target", Eigen::Vector2d(0.0, M_PI), kClosedForm);
   return LongTermCost(readPropagation(reference), pendulumCost(1.0, reference.number("width")),
                       policy, reference.gaussian("m0", "s0"),
@@ -477,7 +455,7 @@ Eigen::VectorXd differences(LongTermCost* cost, const Eigen::VectorXd& parameter
 
 void checkValue(const Case& reference) {
   constexpr Tolerance kGradient = relative(1e-6);
-  SquashedPolicy policy = readSquashedPolicy(reference);
+  RbfPolicy policy = readPolicy(reference);
   const Eigen::VectorXd parameters = policy.parameters();
   LongTermCost cost = readLongTermCost(reference, &policy);
   Eigen::VectorXd exact;
@@ -503,10 +481,10 @@ void checkValue(const Case& reference) {
 void checkAuthors(const Case& reference) {
   constexpr Tolerance kTolerance = relative(1e-5);
   const GpFit fit = trainFromStart(reference);
-  reference.compare("loghyp", toMatrix(fit.model.hyperparameters), kTolerance);
+  reference.compare("loghyp", fit.model.hyperparameters, kTolerance);
   reference.compare("nlml_curb", Eigen::Vector2d(fit.outputs[0].cost, fit.outputs[1].cost),
                     kTolerance);
-  SquashedPolicy policy = readSquashedPolicy(reference);
+  RbfPolicy policy = readPolicy(reference);
   LongTermCost cost = readLongTermCost(reference, &policy);
   reference.compare("J", cost.evaluate(policy.parameters()), kTolerance);
   compareStates(reference, cost.states(), kTolerance);
