@@ -86,9 +86,10 @@ OraclePlanCost::OraclePlanCost(std::unique_ptr<Plant> plant, int horizon, double
       horizon_(horizon),
       control_weight_(control_weight),
       goal_(plant_->visiblePosition(plant_->goal())),
-      state_(plant_->state()),
       states_(plant_->stateDim(), horizon + 1),
-      positions_(goal_.size(), horizon + 1) {}
+      positions_(goal_.size(), horizon + 1) {
+  setState(plant_->state());
+}
 
 Eigen::VectorXd OraclePlanCost::next(const Eigen::VectorXd& state, const Eigen::VectorXd& u) const {
   plant_->setState(state);
@@ -97,19 +98,15 @@ Eigen::VectorXd OraclePlanCost::next(const Eigen::VectorXd& state, const Eigen::
 }
 
 double OraclePlanCost::evaluate(const Eigen::Ref<const Eigen::MatrixXd>& U, Eigen::MatrixXd* d_U) {
-  states_.col(0) = state_;
-  positions_.col(0) = plant_->visiblePosition(state_);
+  positions_.col(0) = plant_->visiblePosition(states_.col(0));
   for (int k = 0; k < horizon_; ++k) {
     states_.col(k + 1) = next(states_.col(k), U.col(k));
     positions_.col(k + 1) = plant_->visiblePosition(states_.col(k + 1));
   }
-  if (d_U != nullptr) backward(U, d_U);
-  return control_weight_ * U.squaredNorm() +
-         (positions_.rightCols(horizon_).colwise() - goal_).squaredNorm();
-}
+  const double cost = control_weight_ * U.squaredNorm() +
+                      (positions_.rightCols(horizon_).colwise() - goal_).squaredNorm();
+  if (d_U == nullptr) return cost;
 
-void OraclePlanCost::backward(const Eigen::Ref<const Eigen::MatrixXd>& U,
-                              Eigen::MatrixXd* d_U) const {
   *d_U = 2.0 * control_weight_ * U;
   Eigen::VectorXd d_state = Eigen::VectorXd::Zero(states_.rows());
   for (int k = horizon_ - 1; k >= 0; --k) {
@@ -123,6 +120,7 @@ void OraclePlanCost::backward(const Eigen::Ref<const Eigen::MatrixXd>& U,
     d_U->col(k) += jacobian(by_torque, u).transpose() * d_state;
     d_state = jacobian(by_state, state).transpose() * d_state;
   }
+  return cost;
 }
 
 std::unique_ptr<Method> makeOracleMethod(const Configuration& configuration, const Plant& plant) {

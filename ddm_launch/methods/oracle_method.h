@@ -26,7 +26,7 @@ class OraclePlanCost : public PlanCost {
   void setGoal(const Eigen::VectorXd& state) { goal_ = plant_->visiblePosition(state); }
 
   /// Sets the state that the plan begins in.
-  void setState(const Eigen::VectorXd& state) { state_ = state; }
+  void setState(const Eigen::VectorXd& state) { states_.col(0) = state; }
 
   double evaluate(const Eigen::Ref<const Eigen::MatrixXd>& U, Eigen::MatrixXd* d_U) override;
   Eigen::MatrixXd predictedFeatures() const override { return positions_; }
@@ -36,13 +36,11 @@ class OraclePlanCost : public PlanCost {
 
  private:
   Eigen::VectorXd next(const Eigen::VectorXd& state, const Eigen::VectorXd& u) const;
-  void backward(const Eigen::Ref<const Eigen::MatrixXd>& U, Eigen::MatrixXd* d_U) const;
 
   std::unique_ptr<Plant> plant_;  // a copy for predictions, not the controlled plant
   int horizon_;
   double control_weight_;
   Eigen::VectorXd goal_;
-  Eigen::VectorXd state_;
   Eigen::MatrixXd states_;     // state_0 ... state_K
   Eigen::MatrixXd positions_;  // p_0 ... p_K
 };

@@ -10,14 +10,6 @@
 namespace ddm::pilco {
 namespace {
 
-/// Index of the pair a <= b in a list of all pairs.
-std::size_t pairIndex(int a, int b) { return static_cast<std::size_t>(b * (b + 1) / 2 + a); }
-
-/// dJ/dS_ab + dJ/dS_ba for a < b, and dJ/dS_aa for a = b.
-double pairAdjoint(int a, int b, const Moments& d_output) {
-  return a == b ? d_output.covariance(a, a) : d_output.covariance(a, b) + d_output.covariance(b, a);
-}
-
 /// The n x n matrix P_ij = w_ij c_j exp(f_i + g_j + u_i^T v_j), which is never stored.
 struct ExponentialMatrix {
   Eigen::VectorXd f;               ///<                                      [n]
@@ -117,14 +109,7 @@ Moments GpMoments::predict(const Gaussian& input, Tape* tape) const {
   const int outputs = model_.outputDim();
   eigen_assert(input.mean.size() == dim && input.covariance.rows() == dim);
   Moments output = constantMoments(dim, outputs, kNaN);
-  if (tape != nullptr) {
-    tape->input = input;
-    tape->kernel_means = Eigen::MatrixXd::Constant(model_.numPoints(), outputs, kNaN);
-    tape->mean = output.mean;
-    tape->inverse_widths.assign(outputs, Eigen::MatrixXd::Constant(dim, dim, kNaN));
-    tape->d_sum_mean.assign(outputs * (outputs + 1) / 2, Eigen::VectorXd::Constant(dim, kNaN));
-    tape->d_sum_covariance.assign(tape->d_sum_mean.size(), tape->inverse_widths.front());
-  }
+  if (tape != nullptr) *tape = {input, Eigen::MatrixXd(model_.numPoints(), outputs), {}, {}, {}};
   // NaN is rejected here, because some vectorised exponentials do not propagate NaN.
   if (!finite_ || !input.mean.allFinite() || !input.covariance.allFinite()) return output;
 
@@ -161,11 +146,11 @@ bool GpMoments::predictMeans(const Eigen::MatrixXd& z, const Eigen::MatrixXd& s,
     output->mean[a] = terms.sum();
     output->gain.col(a).noalias() = inverse_width * (z.transpose() * terms);
     if (tape != nullptr) {
-      tape->inverse_widths[a] = inverse_width;
+      tape->inverse_widths.push_back(inverse_width);
       tape->kernel_means.col(a) = q;
-      tape->mean[a] = output->mean[a];
     }
   }
+  if (tape != nullptr) tape->mean = output->mean;
   return true;
 }
 
@@ -216,9 +201,9 @@ bool GpMoments::predictPair(int a, int b, const Eigen::MatrixXd& z, const Eigen:
                                  scaled_b.transpose() * sums.columns.asDiagonal() * scaled_b +
                                  cross + cross.transpose();
   const Eigen::MatrixXd& K = pair->inverse_R;
-  tape->d_sum_mean[pairIndex(a, b)] = factor * (K.transpose() * first);
-  tape->d_sum_covariance[pairIndex(a, b)] = symmetricPart(
-      0.5 * (factor * (K.transpose() * second * K) - total * (precision_sum.asDiagonal() * K)));
+  tape->d_sums.push_back({factor * (K.transpose() * first),
+                          symmetricPart(0.5 * (factor * (K.transpose() * second * K) -
+                                               total * (precision_sum.asDiagonal() * K)))});
   return true;
 }
 
@@ -266,11 +251,14 @@ Gaussian GpMoments::backward(const Tape& tape, const Moments& d_output, GpGradie
     d_model->log_length_scales.col(a).array() +=
         2.0 * d_widths.array() / precisions_.col(a).array() + g.sum();
   }
+  std::size_t pair = 0;
   for (int b = 0; b < outputs; ++b) {
-    for (int a = 0; a <= b; ++a) {
-      const double d_sum = pairAdjoint(a, b, d_output);
-      d_input.mean += d_sum * tape.d_sum_mean[pairIndex(a, b)];
-      d_input.covariance += d_sum * tape.d_sum_covariance[pairIndex(a, b)];
+    for (int a = 0; a <= b; ++a, ++pair) {
+      // dJ/dS_ab + dJ/dS_ba for a < b, and dJ/dS_aa for a = b
+      const double d_sum = a == b ? d_output.covariance(a, a)
+                                  : d_output.covariance(a, b) + d_output.covariance(b, a);
+      d_input.mean += d_sum * tape.d_sums[pair].mean;
+      d_input.covariance += d_sum * tape.d_sums[pair].covariance;
       if (d_model != nullptr) pairToModel(a, b, d_sum, z, tape.input.covariance, d_model);
     }
   }
@@ -287,20 +275,15 @@ Gaussian GpMoments::backward(const Tape& tape, const Moments& d_output, GpGradie
 /// and the same for b with i and j exchanged; for a = b the two parts are added.
 void GpMoments::pairToModel(int a, int b, double d_sum, const Eigen::MatrixXd& z,
                             const Eigen::MatrixXd& s, GpGradient* d_model) const {
-  const std::optional<Pair> pair = pairTerms(precisions_.col(a) + precisions_.col(b), s);
-  if (!pair) {
-    d_model->beta.setConstant(kNaN);
-    return;
-  }
-  const Eigen::MatrixXd& T = pair->inner;
+  const Pair pair = pairTerms(precisions_.col(a) + precisions_.col(b), s).value();
+  const Eigen::MatrixXd& T = pair.inner;
   const Eigen::MatrixXd u = z * precisions_.col(a).asDiagonal();
   const Eigen::MatrixXd v = z * precisions_.col(b).asDiagonal();
   const Eigen::MatrixXd T_u = u * T;  // row i: (T u_i)^T
   const Eigen::MatrixXd T_v = v * T;
   const Eigen::MatrixXd y_a = T_u - z;
   const Eigen::MatrixXd y_b = T_v - z;
-  const double log_scale =
-      log_signal_variance_[a] + log_signal_variance_[b] - 0.5 * pair->log_det_R;
+  const double log_scale = log_signal_variance_[a] + log_signal_variance_[b] - 0.5 * pair.log_det_R;
   Eigen::MatrixXd Q = T_u * v.transpose();
   Q.colwise() += 0.5 * y_a.cwiseProduct(u).rowwise().sum();
   Q.rowwise() += 0.5 * y_b.cwiseProduct(v).rowwise().sum().transpose();

@@ -38,11 +38,11 @@ class GpMoments {
   /// forms the derivatives of the double sums while it computes Q.
   struct Tape {
     Gaussian input;
-    Eigen::MatrixXd kernel_means;                   ///< q_ai                   [n x E]
-    std::vector<Eigen::MatrixXd> inverse_widths;    ///< (s + Lambda_a)^-1  E times [D x D]
-    std::vector<Eigen::VectorXd> d_sum_mean;        ///< for each pair a <= b       [D]
-    std::vector<Eigen::MatrixXd> d_sum_covariance;  ///< for each pair a <= b   [D x D]
-    Eigen::VectorXd mean;                           ///< M                          [E]
+    Eigen::MatrixXd kernel_means;                 ///< q_ai                   [n x E]
+    std::vector<Eigen::MatrixXd> inverse_widths;  ///< (s + Lambda_a)^-1  E times [D x D]
+    std::vector<Gaussian> d_sums;                 ///< derivatives of the double sum of each pair
+                                                  ///< a <= b by m and s; b counts slower
+    Eigen::VectorXd mean;                         ///< M                          [E]
   };
 
   /// @pre the shapes of the model fit each other (checked by eigen_assert)
@@ -59,6 +59,7 @@ class GpMoments {
   /// @param d_model   (optional) dJ/d inputs, beta, log length-scales are ADDED to it. This forms
   ///                  the matrix Q [n x n] and is meant for policies, which have few points and no
   ///                  model uncertainty
+  /// @pre the result of predict() was finite
   /// @return          dJ/dm, dJ/ds; dJ/ds is symmetric: if s(p,q) and s(q,p) change by h, J changes
   ///                  by h (entry pq + entry qp)
   Gaussian backward(const Tape& tape, const Moments& d_output, GpGradient* d_model = nullptr) const;

@@ -11,16 +11,16 @@ namespace {
 
 /// N([f, u]) from the moments of f and the moments of u = policy(f).
 Gaussian joint(const Moments& features, const Moments& control) {
-  const Eigen::Index num_features = features.mean.size();
-  const Eigen::Index num_controls = control.mean.size();
-  Gaussian both = constantGaussian(static_cast<int>(num_features + num_controls));
-  both.mean << features.mean, control.mean;
-  both.covariance.topLeftCorner(num_features, num_features) = features.covariance;
-  both.covariance.bottomRightCorner(num_controls, num_controls) = control.covariance;
   const Eigen::MatrixXd cross = features.covariance * control.gain;
-  both.covariance.topRightCorner(num_features, num_controls) = cross;
-  both.covariance.bottomLeftCorner(num_controls, num_features) = cross.transpose();
+  Gaussian both = constantGaussian(static_cast<int>(features.mean.size() + control.mean.size()));
+  both.mean << features.mean, control.mean;
+  both.covariance << features.covariance, cross, cross.transpose(), control.covariance;
   return both;
+}
+
+void add(const Gaussian& part, Gaussian* sum) {
+  sum->mean += part.mean;
+  sum->covariance += part.covariance;
 }
 
 }  // namespace
@@ -93,19 +93,16 @@ Gaussian Propagation::backward(const RbfPolicy& policy, const Tape& tape, const 
                           d_fu * tape.control.gain.transpose();
 
   const Gaussian d_policy_input = policy.backward(tape.policy_input, d_control, d_parameters);
-  const auto add = [&d_state](const Gaussian& part) {
-    d_state.mean += part.mean;
-    d_state.covariance += part.covariance;
-  };
   if (noisy_policy_input_) {
     add(features_.backward(policyState(tape.state),
                            Moments{d_policy_input.mean, d_policy_input.covariance,
-                                   Eigen::MatrixXd::Zero(state_dim_, num_features)}));
+                                   Eigen::MatrixXd::Zero(state_dim_, num_features)}),
+        &d_state);
   } else {
     d_features.mean += d_policy_input.mean;
     d_features.covariance += d_policy_input.covariance;
   }
-  add(features_.backward(tape.state, d_features));
+  add(features_.backward(tape.state, d_features), &d_state);
   d_state.covariance = symmetricPart(d_state.covariance);
   return d_state;
 }
@@ -143,8 +140,7 @@ double LongTermCost::evaluate(const Eigen::VectorXd& parameters, Eigen::VectorXd
   for (int t = horizon_; t > 0; --t) {
     Gaussian d_cost;
     cost_.expected(states_[t], &d_cost);
-    d_state.mean += d_cost.mean;
-    d_state.covariance += d_cost.covariance;
+    add(d_cost, &d_state);
     d_state = dynamics_.backward(*policy_, tapes[t - 1], d_state, gradient);
   }
   return total;

@@ -49,6 +49,7 @@ class Propagation {
   Gaussian step(const RbfPolicy& policy, const Gaussian& state, Tape* tape = nullptr) const;
 
   /// Vector-Jacobian product of step(), exact.
+  /// @pre the result of step() was finite
   /// @param d_next        dJ/dm', dJ/ds'
   /// @param d_parameters  dJ/d(parameters of the policy) is ADDED to it
   /// @return              dJ/dm, dJ/ds (symmetric)

@@ -63,6 +63,7 @@ class RbfPolicy {
   Moments predictUnsquashed(const Gaussian& input, GpMoments::Tape* tape = nullptr) const;
 
   /// Vector-Jacobian product of predict() at the same input.
+  /// @pre predict() is finite at the input
   /// @param d_output      dJ/dM, dJ/dS, dJ/dV
   /// @param d_parameters  dJ/d(parameters) is ADDED to it
   /// @return              dJ/dm, dJ/ds (symmetric)

@@ -51,12 +51,9 @@ TEST(GpMoments, AreNaNForNumbersThatAreNotFiniteAndForAnIndefiniteCovariance) {
   const GpModel model = randomGp(2, 2, 6, true, random);
   const Gaussian good = randomGaussian(2, 2, 0.5, random);
   const auto isNaN = [&](const GpModel& gp, const Gaussian& input) {
-    GpMoments moments(gp);
-    GpMoments::Tape tape;
-    const Moments output = moments.predict(input, &tape);
-    const Gaussian d_input = moments.backward(tape, randomMoments(2, 2, random));
+    const Moments output = GpMoments(gp).predict(input);
     return output.mean.array().isNaN().all() && output.covariance.array().isNaN().all() &&
-           output.gain.array().isNaN().all() && !d_input.mean.allFinite();
+           output.gain.array().isNaN().all();
   };
   EXPECT_FALSE(isNaN(model, good));
   for (const double bad :
