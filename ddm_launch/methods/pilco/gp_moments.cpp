@@ -108,19 +108,19 @@ Moments GpMoments::predict(const Gaussian& input, Tape* tape) const {
   const int dim = model_.inputDim();
   const int outputs = model_.outputDim();
   eigen_assert(input.mean.size() == dim && input.covariance.rows() == dim);
-  Moments output = constantMoments(dim, outputs, kNaN);
+  const Moments invalid = constantMoments(dim, outputs, kNaN);
   if (tape != nullptr) *tape = {input, Eigen::MatrixXd(model_.numPoints(), outputs), {}, {}, {}};
   // NaN is rejected here, because some vectorised exponentials do not propagate NaN.
-  if (!finite_ || !input.mean.allFinite() || !input.covariance.allFinite()) return output;
+  if (!finite_ || !input.mean.allFinite() || !input.covariance.allFinite()) return invalid;
 
   const Eigen::MatrixXd z = (model_.inputs.colwise() - input.mean).transpose();
-  bool valid = predictMeans(z, input.covariance, &output, tape);
-  for (int b = 0; valid && b < outputs; ++b) {
-    for (int a = 0; valid && a <= b; ++a) {
-      valid = predictPair(a, b, z, input.covariance, &output, tape);
+  Moments output = invalid;
+  if (!predictMeans(z, input.covariance, &output, tape)) return invalid;
+  for (int b = 0; b < outputs; ++b) {
+    for (int a = 0; a <= b; ++a) {
+      if (!predictPair(a, b, z, input.covariance, &output, tape)) return invalid;
     }
   }
-  if (!valid) output = constantMoments(dim, outputs, kNaN);
   return output;
 }
 

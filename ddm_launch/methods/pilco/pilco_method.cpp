@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pilco/pilco_method.h"
 
+#include <ddm_bag_io/bag_cache.h>
 #include <ddm_common/param_value.h>
 #include <ddm_common/plain_file.h>
 #include <ddm_common/random_stream.h>
@@ -15,10 +16,12 @@
 #include <boost/filesystem.hpp>
 #include <chrono>
 #include <cmath>
+#include <optional>
+#include <random>
 #include <stdexcept>
 #include <utility>
 
-#include "method.h"
+#include "pilco/long_term_cost.h"
 #include "tables.h"
 
 namespace ddm {
@@ -177,6 +180,184 @@ YAML::Node readBlocks(ParamReader* reader) {
   return out;
 }
 
+/// Where the next training starts: the latest policy and the latest optimum of the GPs.
+struct Memory {
+  Eigen::VectorXd policy;     ///< parameters of the policy; empty if there is none yet
+  pilco::GpLearnerState gps;  ///< empty if there is none yet
+};
+
+/// Inputs and statistics of one training.
+struct Training {
+  Memory memory;
+  std::mt19937_64 rng;
+  PhaseCallback progress;
+  YAML::Node report{YAML::NodeType::Map};
+};
+
+class PilcoMethod : public Method {
+ public:
+  PilcoMethod(const Configuration& configuration, const pilco::PilcoConfig& options,
+              std::unique_ptr<Observation> observation)
+      : configuration_(configuration),
+        options_(options),
+        observation_(std::move(observation)),
+        bags_(configuration.model.image.size, configuration.model.data_set) {}
+
+  TrainingOutcome train(const std::vector<std::string>& bags, const TrialId& id,
+                        const PhaseCallback& progress) override {
+    const Clock::time_point start = Clock::now();
+    const DataSet data = bags_.read(bags);
+    const ObservedData observed = observation_->learn(bags, data, id);
+    makePolicy(observed, data.torqueDim());
+    Training training{lastMemory(bags), randomStream(id, StreamRole::kPolicySearch), progress};
+    pilco::Propagation dynamics = learnDynamics(data, observed, &training);
+    const pilco::LongTermCost cost = improvePolicy(std::move(dynamics), observed.task, &training);
+    training.report["policy"] = matrixToYaml(training.memory.policy);
+    training.report["hyperparameters"] = matrixToYaml(training.memory.gps.hyperparameters);
+    training.report["inducing"] = matrixToYaml(training.memory.gps.inducing);
+
+    TrainingOutcome outcome;
+    outcome.files = observation_->files();
+    outcome.files[kMemoryFile] = YAML::Dump(training.report) + "\n";
+    outcome.files["prediction.csv"] =
+        predictionCsv(observation_->names(), configuration_.plant_info.dt, cost);
+    outcome.frames = static_cast<std::uint32_t>(data.numFrames());
+    outcome.evaluations = training.report["evaluations"].as<std::uint32_t>();
+    outcome.seconds = secondsSince(start);
+    return outcome;
+  }
+
+  bool resume(const std::string& folder, const std::vector<std::string>& bags,
+              const TrialId& id) override {
+    const std::string file = folder + "/" + kMemoryFile;
+    if (!boost::filesystem::exists(file)) return false;
+    const DataSet data = bags_.read(bags);
+    makePolicy(observation_->resume(folder, bags, data, id), data.torqueDim());
+    policy_->setParameters(readMemory(file).policy);
+    return true;
+  }
+
+  std::shared_ptr<Policy> policy() const override {
+    if (policy_ == nullptr) return nullptr;
+    return std::make_shared<PilcoPolicy>(observation_, policy_, *features_);
+  }
+
+ private:
+  /// @throws std::runtime_error with path and reason if the file is damaged or does not fit policy_
+  Memory readMemory(const std::string& file) const {
+    const std::string text = readFile(file);
+    try {
+      const YAML::Node root = parseYaml(text, file);
+      if (!root.IsMap()) throw std::runtime_error("must be a map");
+      const int gp_inputs = policy_->inputDim() + policy_->outputDim();
+      return {matrixOf(root, "policy", policy_->parameters().size(), 1),
+              {matrixOf(root, "hyperparameters", gp_inputs + 2, features_->inputDim()),
+               matrixOf(root, "inducing", gp_inputs, Eigen::Dynamic)}};
+    } catch (const std::exception& e) {
+      throw std::runtime_error(file + ": " + e.what() +
+                               ": PILCO goes on from this file, so use another run folder");
+    }
+  }
+
+  /// Reads the memory of the previous training, which is in the folder of the last trial but one.
+  Memory lastMemory(const std::vector<std::string>& bags) const {
+    const size_t last_two_trials = 2 * static_cast<size_t>(configuration_.trial.episodes);
+    if (bags.size() < last_two_trials || !observation_->keepsCoordinates()) return {};
+    const boost::filesystem::path bag = bags[bags.size() - last_two_trials];
+    return readMemory((bag.parent_path() / kMemoryFile).string());
+  }
+
+  void makePolicy(const ObservedData& observed, int torque_dim) {
+    features_ = pilco::replaceAngles(static_cast<int>(observed.X.rows()), observed.task.angles);
+    policy_ = std::make_shared<pilco::RbfPolicy>(
+        features_->outputDim(), options_.pilco.num_centres,
+        perMotor(configuration_.mpc.max_torque, torque_dim, "mpc/max_torque"));
+  }
+
+  pilco::Propagation learnDynamics(const DataSet& data, const ObservedData& observed,
+                                   Training* training) const {
+    const Clock::time_point start = Clock::now();
+    const auto [inputs, targets] = transitions(data, observed.X, *features_);
+    int evaluations = 0;
+    const auto count = [&] {
+      const double most = static_cast<double>(observed.X.rows()) * options_.gp.max_iterations;
+      training->progress(kDynamicsShare * std::min(1.0, ++evaluations / most));
+    };
+    const pilco::GpFit fit = pilco::learnGp(options_.gp, options_.sparse_gp, inputs, targets,
+                                            &training->rng, &training->memory.gps, count);
+    if (!fit.ok()) throw std::runtime_error("PILCO: the GPs could not be trained: " + fit.message);
+    training->report["points"] = static_cast<int>(inputs.cols());
+    training->report["sparse"] = inputs.cols() > options_.sparse_gp.max_points;
+    training->report["gp_s"] = valueToYaml(secondsSince(start));
+    training->report["gp_message"] = fit.message;
+    return pilco::Propagation(fit.model, observed.task.angles, observed.task.noisy);
+  }
+
+  /// Searches the policy and sets policy_. If the cost of the last policy is not finite under the new
+  /// GPs, the search starts from a newly drawn policy. If the cost of that policy is not finite
+  /// either, that policy is kept without a search: an error would end the experiment, and resuming
+  /// the experiment would only repeat the error.
+  /// @return the long-term cost, evaluated at the policy
+  pilco::LongTermCost improvePolicy(pilco::Propagation dynamics, const PilcoTask& task,
+                                    Training* training) {
+    const Clock::time_point start = Clock::now();
+    const auto drawStart = [&] {
+      return drawFirstPolicy(task, *features_, options_.pilco.num_centres, policy_->outputDim(),
+                             &training->rng);
+    };
+    Eigen::VectorXd& parameters = training->memory.policy;
+    if (parameters.size() == 0) parameters = drawStart();
+    pilco::LongTermCost cost(std::move(dynamics), task.cost, policy_.get(), task.start,
+                             options_.pilco.horizon);
+    int evaluations = 0;
+    MinimiseOptions solver;
+    solver.max_iterations = options_.policy_search.max_iterations;
+    solver.max_evaluations = options_.policy_search.max_evaluations;
+    solver.function_tolerance = 1e-8;
+    const auto search = [&] {
+      // The cost is not finite if a predicted distribution grows without bound. The line search then
+      // takes a shorter step.
+      return minimise(
+          [&](const Eigen::VectorXd& p, Eigen::VectorXd* gradient) {
+            // A line search takes about two evaluations.
+            const double done = ++evaluations / (2.0 * options_.policy_search.max_iterations + 1.0);
+            training->progress(kDynamicsShare + (1.0 - kDynamicsShare) * std::min(done, 1.0));
+            return cost.evaluate(p, gradient);
+          },
+          parameters, solver);
+    };
+    Minimum result = search();
+    const bool afresh = result.reason == MinimumReason::kStartFailed;
+    if (afresh) {
+      parameters = drawStart();
+      result = search();
+    }
+    const bool failed = result.reason == MinimumReason::kStartFailed;
+    if (failed) {  // the next trial adds data, which may help
+      result.message = "a first policy is kept, since its cost is not finite either";
+    }
+    parameters = result.x;
+    cost.evaluate(parameters);  // sets the parameters of the policy and the stored prediction
+
+    YAML::Node& report = training->report;
+    report["policy_search_s"] = valueToYaml(secondsSince(start));
+    report["iterations"] = result.iterations;
+    report["evaluations"] = result.evaluations;
+    report["cost_before"] = failed ? YAML::Node() : valueToYaml(result.initial_cost);
+    report["cost_after"] = failed ? YAML::Node() : valueToYaml(result.cost);
+    report["message"] =
+        (afresh ? "started afresh, the last policy's cost is not finite; " : "") + result.message;
+    return cost;
+  }
+
+  const Configuration& configuration_;
+  pilco::PilcoConfig options_;
+  std::shared_ptr<Observation> observation_;
+  BagCache bags_;
+  std::optional<pilco::Augmentation> features_;  // maps x to the input of the policy
+  std::shared_ptr<pilco::RbfPolicy> policy_;     // null before the first training
+};
+
 MethodKind pilcoKind(const std::string& name, const std::string& about,
                      std::unique_ptr<Observation> (*observe)(const Configuration&, const Plant&)) {
   const auto make = [observe](const Configuration& all, const Plant& plant) {
@@ -187,178 +368,17 @@ MethodKind pilcoKind(const std::string& name, const std::string& about,
         all.camera.drop_rate);
     ParamReader reader(all.method_blocks);
     const pilco::PilcoConfig config = readConfig(&reader);
-    return std::make_unique<PilcoMethod>(all, config, observe(all, plant));
+    return makePilcoMethod(all, config, observe(all, plant));
   };
   return {name, "PILCO on " + about, readBlocks, make};
 }
 
 }  // namespace
 
-/// Where the next training starts: the latest policy and the latest optimum of the GPs.
-struct PilcoMethod::Memory {
-  Eigen::VectorXd policy;     ///< parameters of the policy; empty if there is none yet
-  pilco::GpLearnerState gps;  ///< empty if there is none yet
-};
-
-/// Inputs and statistics of one training.
-struct PilcoMethod::Training {
-  Memory memory;
-  std::mt19937_64 rng;
-  PhaseCallback progress;
-  YAML::Node report{YAML::NodeType::Map};
-};
-
-PilcoMethod::PilcoMethod(const Configuration& configuration, const pilco::PilcoConfig& pilco,
-                         std::unique_ptr<Observation> observation)
-    : configuration_(configuration),
-      pilco_(pilco),
-      observation_(std::move(observation)),
-      bags_(configuration.model.image.size, configuration.model.data_set) {}
-
-TrainingOutcome PilcoMethod::train(const std::vector<std::string>& bags, const TrialId& id,
-                                   const PhaseCallback& progress) {
-  const Clock::time_point start = Clock::now();
-  const DataSet data = bags_.read(bags);
-  const ObservedData observed = observation_->learn(bags, data, id);
-  makePolicy(observed, data.torqueDim());
-  Training training{lastMemory(bags), randomStream(id, StreamRole::kPolicySearch), progress};
-  pilco::Propagation dynamics = learnDynamics(data, observed, &training);
-  const pilco::LongTermCost cost = improvePolicy(std::move(dynamics), observed.task, &training);
-  training.report["policy"] = matrixToYaml(training.memory.policy);
-  training.report["hyperparameters"] = matrixToYaml(training.memory.gps.hyperparameters);
-  training.report["inducing"] = matrixToYaml(training.memory.gps.inducing);
-
-  TrainingOutcome outcome;
-  outcome.files = observation_->files();
-  outcome.files[kMemoryFile] = YAML::Dump(training.report) + "\n";
-  outcome.files["prediction.csv"] =
-      predictionCsv(observation_->names(), configuration_.plant_info.dt, cost);
-  outcome.frames = static_cast<std::uint32_t>(data.numFrames());
-  outcome.evaluations = training.report["evaluations"].as<std::uint32_t>();
-  outcome.seconds = secondsSince(start);
-  return outcome;
-}
-
-/// @throws std::runtime_error with path and reason if the file is damaged or does not fit policy_
-PilcoMethod::Memory PilcoMethod::readMemory(const std::string& file) const {
-  const std::string text = readFile(file);
-  try {
-    const YAML::Node root = parseYaml(text, file);
-    if (!root.IsMap()) throw std::runtime_error("must be a map");
-    const int gp_inputs = policy_->inputDim() + policy_->outputDim();
-    return {matrixOf(root, "policy", policy_->parameters().size(), 1),
-            {matrixOf(root, "hyperparameters", gp_inputs + 2, features_->inputDim()),
-             matrixOf(root, "inducing", gp_inputs, Eigen::Dynamic)}};
-  } catch (const std::exception& e) {
-    throw std::runtime_error(file + ": " + e.what() +
-                             ": PILCO goes on from this file, so use another run folder");
-  }
-}
-
-/// Reads the memory of the previous training, which is in the folder of the last trial but one.
-PilcoMethod::Memory PilcoMethod::lastMemory(const std::vector<std::string>& bags) const {
-  const size_t last_two_trials = 2 * static_cast<size_t>(configuration_.trial.episodes);
-  if (bags.size() < last_two_trials || !observation_->keepsCoordinates()) return {};
-  const boost::filesystem::path bag = bags[bags.size() - last_two_trials];
-  return readMemory((bag.parent_path() / kMemoryFile).string());
-}
-
-bool PilcoMethod::resume(const std::string& folder, const std::vector<std::string>& bags,
-                         const TrialId& id) {
-  const std::string file = folder + "/" + kMemoryFile;
-  if (!boost::filesystem::exists(file)) return false;
-  const DataSet data = bags_.read(bags);
-  makePolicy(observation_->resume(folder, bags, data, id), data.torqueDim());
-  policy_->setParameters(readMemory(file).policy);
-  return true;
-}
-
-void PilcoMethod::makePolicy(const ObservedData& observed, int torque_dim) {
-  features_ = pilco::replaceAngles(static_cast<int>(observed.X.rows()), observed.task.angles);
-  policy_ = std::make_shared<pilco::RbfPolicy>(
-      features_->outputDim(), pilco_.pilco.num_centres,
-      perMotor(configuration_.mpc.max_torque, torque_dim, "mpc/max_torque"));
-}
-
-pilco::Propagation PilcoMethod::learnDynamics(const DataSet& data, const ObservedData& observed,
-                                              Training* training) const {
-  const Clock::time_point start = Clock::now();
-  const auto [inputs, targets] = transitions(data, observed.X, *features_);
-  int evaluations = 0;
-  const auto count = [&] {
-    const double most = static_cast<double>(observed.X.rows()) * pilco_.gp.max_iterations;
-    training->progress(kDynamicsShare * std::min(1.0, ++evaluations / most));
-  };
-  const pilco::GpFit fit = pilco::learnGp(pilco_.gp, pilco_.sparse_gp, inputs, targets,
-                                          &training->rng, &training->memory.gps, count);
-  if (!fit.ok()) throw std::runtime_error("PILCO: the GPs could not be trained: " + fit.message);
-  training->report["points"] = static_cast<int>(inputs.cols());
-  training->report["sparse"] = inputs.cols() > pilco_.sparse_gp.max_points;
-  training->report["gp_s"] = valueToYaml(secondsSince(start));
-  training->report["gp_message"] = fit.message;
-  return pilco::Propagation(fit.model, observed.task.angles, observed.task.noisy);
-}
-
-/// Searches the policy and sets policy_. If the cost of the last policy is not finite under the new
-/// GPs, the search starts from a newly drawn policy. If the cost of that policy is not finite
-/// either, that policy is kept without a search: an error would end the experiment, and resuming
-/// the experiment would only repeat the error.
-/// @return the long-term cost, evaluated at the policy
-pilco::LongTermCost PilcoMethod::improvePolicy(pilco::Propagation dynamics, const PilcoTask& task,
-                                               Training* training) {
-  const Clock::time_point start = Clock::now();
-  const auto drawStart = [&] {
-    return drawFirstPolicy(task, *features_, pilco_.pilco.num_centres, policy_->outputDim(),
-                           &training->rng);
-  };
-  Eigen::VectorXd& parameters = training->memory.policy;
-  if (parameters.size() == 0) parameters = drawStart();
-  pilco::LongTermCost cost(std::move(dynamics), task.cost, policy_.get(), task.start,
-                           pilco_.pilco.horizon);
-  int evaluations = 0;
-  MinimiseOptions solver;
-  solver.max_iterations = pilco_.policy_search.max_iterations;
-  solver.max_evaluations = pilco_.policy_search.max_evaluations;
-  solver.function_tolerance = 1e-8;
-  const auto search = [&] {
-    // The cost is not finite if a predicted distribution grows without bound. The line search then
-    // takes a shorter step.
-    return minimise(
-        [&](const Eigen::VectorXd& p, Eigen::VectorXd* gradient) {
-          // A line search takes about two evaluations.
-          const double done = ++evaluations / (2.0 * pilco_.policy_search.max_iterations + 1.0);
-          training->progress(kDynamicsShare + (1.0 - kDynamicsShare) * std::min(done, 1.0));
-          return cost.evaluate(p, gradient);
-        },
-        parameters, solver);
-  };
-  Minimum result = search();
-  const bool afresh = result.reason == MinimumReason::kStartFailed;
-  if (afresh) {
-    parameters = drawStart();
-    result = search();
-  }
-  const bool failed = result.reason == MinimumReason::kStartFailed;
-  if (failed) {  // the next trial adds data, which may help
-    result.message = "a first policy is kept, since its cost is not finite either";
-  }
-  parameters = result.x;
-  cost.evaluate(parameters);  // sets the parameters of the policy and the stored prediction
-
-  YAML::Node& report = training->report;
-  report["policy_search_s"] = valueToYaml(secondsSince(start));
-  report["iterations"] = result.iterations;
-  report["evaluations"] = result.evaluations;
-  report["cost_before"] = failed ? YAML::Node() : valueToYaml(result.initial_cost);
-  report["cost_after"] = failed ? YAML::Node() : valueToYaml(result.cost);
-  report["message"] =
-      (afresh ? "started afresh, the last policy's cost is not finite; " : "") + result.message;
-  return cost;
-}
-
-std::shared_ptr<Policy> PilcoMethod::policy() const {
-  if (policy_ == nullptr) return nullptr;
-  return std::make_shared<PilcoPolicy>(observation_, policy_, *features_);
+std::unique_ptr<Method> makePilcoMethod(const Configuration& configuration,
+                                        const pilco::PilcoConfig& options,
+                                        std::unique_ptr<Observation> observation) {
+  return std::make_unique<PilcoMethod>(configuration, options, std::move(observation));
 }
 
 std::vector<MethodKind> pilcoMethods() {

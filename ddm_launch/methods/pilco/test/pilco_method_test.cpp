@@ -244,13 +244,13 @@ TEST_F(PilcoMethodTest, GoesOnWithAFirstPolicyWhereNoCostIsFinite) {
   pilco::PilcoConfig config;
   config.pilco.horizon = 8;
   config.pilco.num_centres = 4;
-  PilcoMethod method(all, config, std::make_unique<PointlessObservation>());
+  const auto method = makePilcoMethod(all, config, std::make_unique<PointlessObservation>());
   const TrainingOutcome outcome =
-      method.train({folder("run") + "/trial_000/trial.bag"}, {7, 0, false}, [](double) {});
+      method->train({folder("run") + "/trial_000/trial.bag"}, {7, 0, false}, [](double) {});
   const YAML::Node report = YAML::Load(outcome.files.at("pilco.yaml"));
   EXPECT_NE(report["message"].as<std::string>().find("not finite"), std::string::npos);
   EXPECT_TRUE(report["cost_before"].IsNull() && report["cost_after"].IsNull());
-  const std::shared_ptr<Policy> policy = method.policy();
+  const std::shared_ptr<Policy> policy = method->policy();
   ASSERT_NE(policy, nullptr);
   policy->startTrial({7, 0, true});
   policy->observe({});
