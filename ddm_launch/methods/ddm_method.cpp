@@ -26,7 +26,28 @@ class DdmMethod : public Method {
 
   /// @throws std::runtime_error if a bag cannot be read or the training fails
   TrainingOutcome train(const std::vector<std::string>& bags, const TrialId& id,
-                        const PhaseCallback& progress) override;
+                        const PhaseCallback& progress) override {
+    ModelInfo info;
+    info.seed = id.seed;
+    info.trial = id.trial;
+    info.config = toText(configuration_.model);
+    const TrainingResult result =
+        ddm::train(bags_.read(bags), configuration_.model.model, configuration_.model.training,
+                   info, [&progress](const TrainingProgress& state) {
+                     progress(state.fraction_done);
+                     return true;
+                   });
+    if (!result.model) throw std::runtime_error(result.message);
+    setModel(std::make_shared<const Ddm>(*result.model));
+    TrainingOutcome outcome;
+    outcome.files["model.ddm"] = serialiseModel(*model_);
+    outcome.frames = model_->info().frames;
+    outcome.v_r = model_->info().v_r;
+    outcome.v_p = model_->info().v_p;
+    outcome.seconds = result.seconds;
+    outcome.evaluations = result.evaluations;
+    return outcome;
+  }
 
   std::shared_ptr<Policy> policy() const override {
     if (policy_ == nullptr && model_ != nullptr) {
@@ -52,30 +73,6 @@ class DdmMethod : public Method {
   // All trials of a model share its policy, because the cost-to-go takes up to two seconds.
   mutable std::shared_ptr<Policy> policy_;
 };
-
-TrainingOutcome DdmMethod::train(const std::vector<std::string>& bags, const TrialId& id,
-                                 const PhaseCallback& progress) {
-  ModelInfo info;
-  info.seed = id.seed;
-  info.trial = id.trial;
-  info.config = toText(configuration_.model);
-  const TrainingResult result =
-      ddm::train(bags_.read(bags), configuration_.model.model, configuration_.model.training, info,
-                 [&progress](const TrainingProgress& state) {
-                   progress(state.fraction_done);
-                   return true;
-                 });
-  if (!result.model) throw std::runtime_error(result.message);
-  setModel(std::make_shared<const Ddm>(*result.model));
-  TrainingOutcome outcome;
-  outcome.files["model.ddm"] = serialiseModel(*model_);
-  outcome.frames = model_->info().frames;
-  outcome.v_r = model_->info().v_r;
-  outcome.v_p = model_->info().v_p;
-  outcome.seconds = result.seconds;
-  outcome.evaluations = result.evaluations;
-  return outcome;
-}
 
 }  // namespace
 

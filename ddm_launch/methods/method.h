@@ -3,6 +3,7 @@
 #pragma once
 
 #include <ddm_common/param_reader.h>
+#include <ddm_mpc/planner.h>
 #include <ddm_mpc/policy.h>
 #include <ddm_sim/plant.h>
 #include <yaml-cpp/yaml.h>
@@ -42,6 +43,19 @@ std::vector<MethodKind> methodKinds();
 
 std::unique_ptr<Method> makeDdmMethod(const Configuration& configuration, const Plant& plant);
 std::unique_ptr<Method> makeOracleMethod(const Configuration& configuration, const Plant& plant);
+
+/// Cost of a plan U from the present state of a plant, with a second plant as the model:
+///
+///   J(U) = sum_{k=1}^{K} |p_k - p_goal|^2 + lambda |u_{k-1}|^2
+///   state_{k+1} = model(state_k, u_k)
+///
+/// p is the position of the moving part in the image, Plant::visiblePosition(). For the pendulum, p
+/// lies on a circle, as the features do after training. The planner therefore solves the same
+/// problem as with the DDM, but with a perfect model. The gradient is computed backwards through
+/// the steps; the Jacobian of each step is computed by central differences.
+/// @param plant  its state and its goal are used; must outlive the cost
+std::unique_ptr<PlanCost> makeOracleCost(const Plant& plant, std::unique_ptr<Plant> model,
+                                         int horizon, double control_weight);
 
 /// pilco_state, pilco_features and pilco_pca. Empty if the CMake option DDM_PILCO is off.
 std::vector<MethodKind> pilcoMethods();

@@ -1,7 +1,5 @@
 // Oracle: the paper's MPC with the true plant as model and with its true state.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "oracle_method.h"
-
 #include <ddm_common/random_stream.h>
 #include <ddm_mpc/planner.h>
 #include <ddm_sim/plant.h>
@@ -33,12 +31,70 @@ Eigen::MatrixXd jacobian(const Function& f, const Eigen::VectorXd& x) {
   return out;
 }
 
+class OraclePlanCost : public PlanCost {
+ public:
+  OraclePlanCost(const Plant& plant, std::unique_ptr<Plant> model, int horizon,
+                 double control_weight)
+      : plant_(plant),
+        model_(std::move(model)),
+        horizon_(horizon),
+        control_weight_(control_weight),
+        states_(plant.stateDim(), horizon + 1),
+        positions_(goalFeature().size(), horizon + 1) {}
+
+  double evaluate(const Eigen::Ref<const Eigen::MatrixXd>& U, Eigen::MatrixXd* d_U) override {
+    const Eigen::VectorXd goal = goalFeature();
+    states_.col(0) = plant_.state();
+    positions_.col(0) = model_->visiblePosition(states_.col(0));
+    for (int k = 0; k < horizon_; ++k) {
+      states_.col(k + 1) = next(states_.col(k), U.col(k));
+      positions_.col(k + 1) = model_->visiblePosition(states_.col(k + 1));
+    }
+    const double cost = control_weight_ * U.squaredNorm() +
+                        (positions_.rightCols(horizon_).colwise() - goal).squaredNorm();
+    if (d_U == nullptr) return cost;
+
+    *d_U = 2.0 * control_weight_ * U;
+    Eigen::VectorXd d_state = Eigen::VectorXd::Zero(states_.rows());
+    for (int k = horizon_ - 1; k >= 0; --k) {
+      const Eigen::VectorXd state = states_.col(k);
+      const Eigen::VectorXd u = U.col(k);
+      const auto position = [this](const Eigen::VectorXd& s) { return model_->visiblePosition(s); };
+      d_state +=
+          2.0 * jacobian(position, states_.col(k + 1)).transpose() * (positions_.col(k + 1) - goal);
+      const auto by_torque = [this, &state](const Eigen::VectorXd& v) { return next(state, v); };
+      const auto by_state = [this, &u](const Eigen::VectorXd& s) { return next(s, u); };
+      d_U->col(k) += jacobian(by_torque, u).transpose() * d_state;
+      d_state = jacobian(by_state, state).transpose() * d_state;
+    }
+    return cost;
+  }
+
+  Eigen::MatrixXd predictedFeatures() const override { return positions_; }
+  Eigen::VectorXd goalFeature() const override { return model_->visiblePosition(plant_.goal()); }
+  int horizon() const override { return horizon_; }
+  int torqueDim() const override { return plant_.torqueDim(); }
+
+ private:
+  Eigen::VectorXd next(const Eigen::VectorXd& state, const Eigen::VectorXd& u) const {
+    model_->setState(state);
+    model_->step(u);
+    return model_->state();
+  }
+
+  const Plant& plant_;
+  std::unique_ptr<Plant> model_;
+  int horizon_;
+  double control_weight_;
+  Eigen::MatrixXd states_;     // state_0 ... state_K
+  Eigen::MatrixXd positions_;  // p_0 ... p_K
+};
+
 /// Plans from the true state of the plant; ignores the image.
 class OraclePolicy : public Policy {
  public:
   OraclePolicy(const Configuration& configuration, const Plant& plant)
-      : plant_(plant),
-        cost_(makePlant(*configuration.plant), configuration.mpc.horizon,
+      : cost_(plant, makePlant(*configuration.plant), configuration.mpc.horizon,
               configuration.mpc.control_weight),
         planner_(&cost_, configuration.mpc) {}
 
@@ -46,13 +102,11 @@ class OraclePolicy : public Policy {
     planner_.clear();
     rng_ = randomStream(id, StreamRole::kPlannerStarts);
   }
-  void setGoal(const Grey& /*goal*/) override { cost_.setGoal(plant_.goal()); }
-  void observe(const Grey& /*grey*/) override { cost_.setState(plant_.state()); }
+  void observe(const Grey& /*grey*/) override {}
   Answer answer() override { return answerWith(planner_.solve(&rng_)); }
   void apply(const Eigen::VectorXd& /*u*/) override {}
 
  private:
-  const Plant& plant_;
   OraclePlanCost cost_;
   Planner planner_;
   std::mt19937_64 rng_;
@@ -81,46 +135,9 @@ class OracleMethod : public Method {
 
 }  // namespace
 
-OraclePlanCost::OraclePlanCost(std::unique_ptr<Plant> plant, int horizon, double control_weight)
-    : plant_(std::move(plant)),
-      horizon_(horizon),
-      control_weight_(control_weight),
-      goal_(plant_->visiblePosition(plant_->goal())),
-      states_(plant_->stateDim(), horizon + 1),
-      positions_(goal_.size(), horizon + 1) {
-  setState(plant_->state());
-}
-
-Eigen::VectorXd OraclePlanCost::next(const Eigen::VectorXd& state, const Eigen::VectorXd& u) const {
-  plant_->setState(state);
-  plant_->step(u);
-  return plant_->state();
-}
-
-double OraclePlanCost::evaluate(const Eigen::Ref<const Eigen::MatrixXd>& U, Eigen::MatrixXd* d_U) {
-  positions_.col(0) = plant_->visiblePosition(states_.col(0));
-  for (int k = 0; k < horizon_; ++k) {
-    states_.col(k + 1) = next(states_.col(k), U.col(k));
-    positions_.col(k + 1) = plant_->visiblePosition(states_.col(k + 1));
-  }
-  const double cost = control_weight_ * U.squaredNorm() +
-                      (positions_.rightCols(horizon_).colwise() - goal_).squaredNorm();
-  if (d_U == nullptr) return cost;
-
-  *d_U = 2.0 * control_weight_ * U;
-  Eigen::VectorXd d_state = Eigen::VectorXd::Zero(states_.rows());
-  for (int k = horizon_ - 1; k >= 0; --k) {
-    const Eigen::VectorXd state = states_.col(k);
-    const Eigen::VectorXd u = U.col(k);
-    const auto position = [this](const Eigen::VectorXd& s) { return plant_->visiblePosition(s); };
-    d_state +=
-        2.0 * jacobian(position, states_.col(k + 1)).transpose() * (positions_.col(k + 1) - goal_);
-    const auto by_torque = [this, &state](const Eigen::VectorXd& v) { return next(state, v); };
-    const auto by_state = [this, &u](const Eigen::VectorXd& s) { return next(s, u); };
-    d_U->col(k) += jacobian(by_torque, u).transpose() * d_state;
-    d_state = jacobian(by_state, state).transpose() * d_state;
-  }
-  return cost;
+std::unique_ptr<PlanCost> makeOracleCost(const Plant& plant, std::unique_ptr<Plant> model,
+                                         int horizon, double control_weight) {
+  return std::make_unique<OraclePlanCost>(plant, std::move(model), horizon, control_weight);
 }
 
 std::unique_ptr<Method> makeOracleMethod(const Configuration& configuration, const Plant& plant) {

@@ -1,7 +1,5 @@
 // Tests of the oracle: its cost, its gradient, and its control of the true plant.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "oracle_method.h"
-
 #include <ddm_model/minimise.h>
 #include <ddm_model/testing/gradient_check.h>
 #include <ddm_model/testing/random_matrix.h>
@@ -38,35 +36,35 @@ DifferentiableFunction costFunction(PlanCost* cost) {
   };
 }
 
-TEST(OraclePlanCost, AddsUpSquaredDistancesOfTheTipAndThePriceOfTorque) {
-  OraclePlanCost cost(makePlantOf("pendulum"), 5, kControlWeight);
-  const Eigen::Vector2d start(0.3, -0.2);
-  cost.setState(start);
-  const Eigen::MatrixXd U = 3.0 * randomMatrix(1, 5, 1);
+TEST(OracleCost, AddsUpSquaredDistancesOfTheTipAndThePriceOfTorque) {
   const std::unique_ptr<Plant> plant = makePlantOf("pendulum");
-  plant->setState(start);
+  plant->setState(Eigen::Vector2d(0.3, -0.2));
+  const auto cost = makeOracleCost(*plant, makePlantOf("pendulum"), 5, kControlWeight);
+  const Eigen::MatrixXd U = 3.0 * randomMatrix(1, 5, 1);
+  const double J = cost->evaluate(U, nullptr);
   double expected = 0.0;
   for (int k = 0; k < 5; ++k) {
     plant->step(U.col(k));
     const double angle = plant->state()[0];
     expected += 2.0 + 2.0 * std::cos(angle) + kControlWeight * U(0, k) * U(0, k);
   }
-  EXPECT_NEAR(cost.evaluate(U, nullptr), expected, 1e-12);
-  EXPECT_EQ(cost.predictedFeatures().cols(), 6);
-  EXPECT_EQ(cost.predictedFeatures().col(5), plant->visiblePosition(plant->state()));
-  EXPECT_NEAR((cost.goalFeature() - Eigen::Vector2d(0.0, 1.0)).norm(), 0.0, 1e-12);
+  EXPECT_NEAR(J, expected, 1e-12);
+  EXPECT_EQ(cost->predictedFeatures().cols(), 6);
+  EXPECT_EQ(cost->predictedFeatures().col(5), plant->visiblePosition(plant->state()));
+  EXPECT_NEAR((cost->goalFeature() - Eigen::Vector2d(0.0, 1.0)).norm(), 0.0, 1e-12);
 }
 
-TEST(OraclePlanCost, GradientMatchesDifferencesOnEveryPlant) {
-  OraclePlanCost rod(makePlantOf("pendulum"), 6, kControlWeight);
-  rod.setState(Eigen::Vector2d(0.4, 1.0));
-  EXPECT_TRUE(testing::gradientMatches(costFunction(&rod), 2.0 * randomMatrix(6, 1, 2)));
-  OraclePlanCost tile(makePlantOf("moving_tile"), 4, kControlWeight);
-  tile.setState(Eigen::Vector2d(20.0, 30.0));
-  EXPECT_TRUE(testing::gradientMatches(costFunction(&tile), randomMatrix(8, 1, 3)));
-  OraclePlanCost arm(makePlantOf("two_link"), 4, kControlWeight);
-  arm.setState(Eigen::Vector4d(0.4, -0.3, 1.0, 0.5));
-  EXPECT_TRUE(testing::gradientMatches(costFunction(&arm), randomMatrix(8, 1, 4)));
+TEST(OracleCost, GradientMatchesDifferencesOnEveryPlant) {
+  const auto expectMatch = [](const std::string& type, const Eigen::VectorXd& state, int horizon,
+                              const Eigen::VectorXd& U) {
+    const std::unique_ptr<Plant> plant = makePlantOf(type);
+    plant->setState(state);
+    const auto cost = makeOracleCost(*plant, makePlantOf(type), horizon, kControlWeight);
+    EXPECT_TRUE(testing::gradientMatches(costFunction(cost.get()), U)) << type;
+  };
+  expectMatch("pendulum", Eigen::Vector2d(0.4, 1.0), 6, 2.0 * randomMatrix(6, 1, 2));
+  expectMatch("moving_tile", Eigen::Vector2d(20.0, 30.0), 4, randomMatrix(8, 1, 3));
+  expectMatch("two_link", Eigen::Vector4d(0.4, -0.3, 1.0, 0.5), 4, randomMatrix(8, 1, 4));
 }
 
 class OracleTest : public ::testing::Test {

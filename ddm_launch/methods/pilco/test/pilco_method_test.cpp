@@ -83,6 +83,14 @@ class PilcoMethodTest : public ::testing::Test {
  protected:
   PilcoMethodTest() { silenceSolverLog(); }
   std::string folder(const std::string& name) const { return scratch_.file(name); }
+  /// The bags of the first three trials of the folder "run".
+  std::vector<std::string> threeBags() const {
+    std::vector<std::string> bags;
+    for (const std::string trial : {"000", "001", "002"}) {
+      bags.push_back(folder("run") + "/trial_" + trial + "/trial.bag");
+    }
+    return bags;
+  }
 
   testing::TempFolder scratch_;
 };
@@ -161,11 +169,7 @@ TEST_F(PilcoMethodTest, APolicyGoesOnFromTheLastOneWhereTheCoordinatesStay) {
     for (double& parameter : *policy) parameter *= 1.1;
   });
   InProcessDriver driver(all);
-  std::vector<std::string> bags;
-  for (int k = 0; k < 3; ++k) {
-    bags.push_back(folder("run") + "/trial_00" + std::to_string(k) + "/trial.bag");
-  }
-  const TrainingOutcome outcome = driver.train(bags, {7, 2, false}, [](double) {});
+  const TrainingOutcome outcome = driver.train(threeBags(), {7, 2, false}, [](double) {});
   const YAML::Node now = YAML::Load(outcome.files.at("pilco.yaml"));
   EXPECT_NE(now["cost_before"].as<double>(), report(2)["cost_before"].as<double>());
   EXPECT_NE(YAML::Dump(now["policy"]), YAML::Dump(report(2)["policy"]));
@@ -175,11 +179,7 @@ TEST_F(PilcoMethodTest, AMissingOrDamagedMemoryIsNamed) {
   const Configuration all = smallConfiguration("pilco_state", folder("run"));
   runSmall(all);
   const std::string file = folder("run") + "/trial_001/pilco.yaml";
-  std::vector<std::string> bags;
-  for (int k = 0; k < 3; ++k) {
-    bags.push_back(folder("run") + "/trial_00" + std::to_string(k) + "/trial.bag");
-  }
-  const auto train = [&] { InProcessDriver(all).train(bags, {7, 2, false}, [](double) {}); };
+  const auto train = [&] { InProcessDriver(all).train(threeBags(), {7, 2, false}, [](double) {}); };
   const std::string good = textOf(file);
   for (const std::string key : {"policy", "hyperparameters", "inducing"}) {
     writeText(file, good);
