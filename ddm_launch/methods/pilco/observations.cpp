@@ -1,7 +1,5 @@
 // Observations, the states of PILCO: true state, features of images, or principal components.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pilco/observations.h"
-
 #include <ddm_common/plain_file.h>
 #include <ddm_model/ddm.h>
 #include <ddm_model/model_file.h>
@@ -15,6 +13,7 @@
 #include <stdexcept>
 
 #include "pilco/gp.h"
+#include "pilco/pilco_method.h"
 #include "tables.h"
 
 namespace ddm {

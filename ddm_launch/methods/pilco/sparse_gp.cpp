@@ -197,10 +197,9 @@ GpFit learnGp(const GpTrainingOptions& training, const SparseGpOptions& sparse,
   }
   GpFit fit = trainGp(X, Y, training.max_iterations, state->hyperparameters, on_evaluation);
   if (!fit.ok()) return fit;
-  const Hyperparameters hyperparameters = fit.model.hyperparameters;
-  state->hyperparameters = hyperparameters;
+  state->hyperparameters = fit.model.hyperparameters;
   if (!use_sparse) {
-    if (use_subset) fit.add(makeGpModel(inputs, targets, hyperparameters));
+    if (use_subset) fit.add(makeGpModel(inputs, targets, state->hyperparameters));
     return fit;
   }
 
@@ -208,7 +207,7 @@ GpFit learnGp(const GpTrainingOptions& training, const SparseGpOptions& sparse,
   const Eigen::MatrixXd start =
       first ? columnsOf(inputs, randomIndices(inputs.cols(), sparse.max_points, rng))
             : state->inducing;
-  fit.add(trainSparseGp(start, inputs, targets, hyperparameters,
+  fit.add(trainSparseGp(start, inputs, targets, state->hyperparameters,
                         first ? sparse.first_iterations : sparse.max_iterations, on_evaluation));
   if (fit.ok()) state->inducing = fit.model.inputs;
   return fit;

@@ -1,8 +1,6 @@
 // Tests of the observations of the baselines, and of the task in their coordinates.
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "pilco/observations.h"
-
 #include <ddm_msgs/testing/expect_error.h>
 #include <ddm_msgs/testing/temp_folder.h>
 #include <ddm_sim/plant.h>
@@ -11,6 +9,7 @@
 #include <boost/filesystem.hpp>
 #include <cmath>
 
+#include "pilco/pilco_method.h"
 #include "tables.h"
 #include "toy_run.h"
 
