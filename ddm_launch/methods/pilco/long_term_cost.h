@@ -1,4 +1,4 @@
-// Long-term cost of a policy under the learned dynamics, and the search for the best policy.
+// Prediction of the state under a policy, and the long-term cost of the policy with its gradient.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 

@@ -92,15 +92,6 @@ struct PilcoConfig {
   GpTrainingOptions gp;
   SparseGpOptions sparse_gp;
   PolicySearchOptions policy_search;
-
-  /// Calls `visitor` with the name and the values of each block.
-  template <class Visitor>
-  void visitBlocks(const Visitor& visitor) {
-    visitor("pilco", pilco);
-    visitor("gp", gp);
-    visitor("sparse_gp", sparse_gp);
-    visitor("policy_search", policy_search);
-  }
 };
 
 }  // namespace ddm::pilco

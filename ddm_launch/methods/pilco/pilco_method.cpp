@@ -166,17 +166,18 @@ class PilcoPolicy : public Policy {
 };
 
 pilco::PilcoConfig readConfig(ParamReader* reader) {
-  pilco::PilcoConfig config;
-  config.visitBlocks([reader](const char* name, auto& block) {
-    block = reader->read<std::decay_t<decltype(block)>>(name);
-  });
-  return config;
+  return {reader->read<pilco::PilcoOptions>("pilco"), reader->read<pilco::GpTrainingOptions>("gp"),
+          reader->read<pilco::SparseGpOptions>("sparse_gp"),
+          reader->read<pilco::PolicySearchOptions>("policy_search")};
 }
 
 YAML::Node readBlocks(ParamReader* reader) {
+  const pilco::PilcoConfig config = readConfig(reader);
   YAML::Node out;
-  readConfig(reader).visitBlocks(
-      [&out](const char* name, auto& block) { out[name] = toYaml(block); });
+  out["pilco"] = toYaml(config.pilco);
+  out["gp"] = toYaml(config.gp);
+  out["sparse_gp"] = toYaml(config.sparse_gp);
+  out["policy_search"] = toYaml(config.policy_search);
   return out;
 }
 

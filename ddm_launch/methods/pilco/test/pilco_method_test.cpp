@@ -270,25 +270,28 @@ TEST_F(PilcoMethodTest, AScheduleThatDoesNotFitTheMethodIsRefused) {
 }
 
 TEST(PilcoOptions, HaveTheDefaultsOfTheParameterReferenceInItsOrderAndReportAllProblems) {
+  const auto readBlocks = methodKind("pilco_state").readBlocks;
   const YAML::Node reference = YAML::LoadFile(DDM_PILCO_REFERENCE);
-  YAML::Node defaults;
-  pilco::PilcoConfig config;
-  config.visitBlocks([&](const char* name, auto& block) { defaults[name] = toYaml(block); });
+  ParamReader empty{YAML::Node()};
+  const YAML::Node defaults = readBlocks(&empty);
   ParamReader reader(reference);
   const auto keys = [](const YAML::Node& map) {
     std::string out;
     for (const auto& entry : map) out += entry.first.as<std::string>() + " ";
     return out;
   };
-  EXPECT_EQ(YAML::Dump(methodKind("pilco_state").readBlocks(&reader)), YAML::Dump(defaults));
+  EXPECT_EQ(YAML::Dump(readBlocks(&reader)), YAML::Dump(defaults));
   EXPECT_NO_THROW(reader.requireValid());
   EXPECT_EQ(keys(reference), keys(defaults));
   for (const auto& block : defaults) {
     EXPECT_EQ(keys(reference[block.first.as<std::string>()]), keys(block.second));
   }
-  config = {{0, 0}, {-1, 1}, {0, -1}, {-1, 0}};
-  config.visitBlocks(
-      [](const char* name, auto& block) { EXPECT_EQ(block.problems().size(), 2U) << name; });
+  ParamReader invalid(YAML::Load(
+      "{pilco: {horizon: 0, num_centres: 0}, gp: {max_iterations: -1, training_points: 1},"
+      " sparse_gp: {max_points: 0, first_iterations: -1, max_iterations: -1},"
+      " policy_search: {max_iterations: -1, max_evaluations: 0}}"));
+  readBlocks(&invalid);
+  EXPECT_EQ(invalid.problems().size(), 9U);
 }
 
 TEST_F(PilcoMethodTest, ASavedConfigurationCanBeGivenAgain) {
