@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pilco/long_term_cost.h"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -149,8 +148,7 @@ double LongTermCost::evaluate(const Eigen::VectorXd& parameters, Eigen::VectorXd
 std::vector<double> LongTermCost::costStandardDeviations() const {
   std::vector<double> out;
   for (std::size_t t = 1; t < states_.size(); ++t) {
-    // Rounding may make the variance slightly negative.
-    out.push_back(std::sqrt(std::max(0.0, cost_.variance(states_[t]))));
+    out.push_back(std::sqrt(cost_.variance(states_[t])));
   }
   return out;
 }

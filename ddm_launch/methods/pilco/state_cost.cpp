@@ -180,7 +180,7 @@ double StateCost::variance(const Gaussian& state) const {
   const double reward = expectedReward(features, target_, weight_, 1.0, &P);
   const double squared = expectedReward(features, target_, weight_, 2.0, &P);
   const double variance = squared - reward * reward;
-  return variance < kRounding ? 0.0 : variance;
+  return variance >= kRounding ? variance : 0.0;
 }
 
 StateCost pendulumCost(double length, double width) {
