@@ -4,7 +4,6 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
-#include <optional>
 #include <utility>
 
 namespace ddm::pilco {
@@ -59,22 +58,21 @@ ExponentialSums exponentialSums(const ExponentialMatrix& matrix,
 struct Pair {
   Eigen::MatrixXd inverse_R;  ///< R^-1 = (I + s P)^-1                       [D x D]
   Eigen::MatrixXd inner;      ///< T = R^-1 s, symmetric                     [D x D]
-  double log_det_R;
+  double log_det_R = 0.0;
 };
 
 /// @param precision_sum  P = Lambda_a^-1 + Lambda_b^-1, a diagonal              [D]
-/// @return               empty if R has eigenvalues that are not positive
-std::optional<Pair> pairTerms(const Eigen::VectorXd& precision_sum, const Eigen::MatrixXd& s) {
+/// @return               empty matrices if R has eigenvalues that are not positive
+Pair pairTerms(const Eigen::VectorXd& precision_sum, const Eigen::MatrixXd& s) {
   // With C = P^1/2: R^-1 = C^-1 (I + C s C)^-1 C and T = C^-1 (I + C s C)^-1 (C s C) C^-1.
   const Eigen::VectorXd root = precision_sum.cwiseSqrt();
   const Eigen::VectorXd inverse_root = root.cwiseInverse();
   const Eigen::MatrixXd scaled = root.asDiagonal() * symmetricPart(s) * root.asDiagonal();
   const Eigen::LLT<Eigen::MatrixXd> llt(Eigen::MatrixXd::Identity(s.rows(), s.cols()) + scaled);
-  if (llt.info() != Eigen::Success) return std::nullopt;
-  return Pair{
-      inverse_root.asDiagonal() * llt.solve(Eigen::MatrixXd(root.asDiagonal())),
-      symmetricPart(inverse_root.asDiagonal() * llt.solve(scaled) * inverse_root.asDiagonal()),
-      2.0 * llt.matrixLLT().diagonal().array().log().sum()};
+  if (llt.info() != Eigen::Success) return {};
+  return {inverse_root.asDiagonal() * llt.solve(Eigen::MatrixXd(root.asDiagonal())),
+          symmetricPart(inverse_root.asDiagonal() * llt.solve(scaled) * inverse_root.asDiagonal()),
+          2.0 * llt.matrixLLT().diagonal().array().log().sum()};
 }
 
 }  // namespace
@@ -167,17 +165,17 @@ bool GpMoments::predictMeans(const Eigen::MatrixXd& z, const Eigen::MatrixXd& s,
 bool GpMoments::predictPair(int a, int b, const Eigen::MatrixXd& z, const Eigen::MatrixXd& s,
                             Moments* output, Tape* tape) const {
   const Eigen::VectorXd precision_sum = precisions_.col(a) + precisions_.col(b);
-  const std::optional<Pair> pair = pairTerms(precision_sum, s);
-  if (!pair) return false;
+  const Pair pair = pairTerms(precision_sum, s);
+  if (pair.inner.size() == 0) return false;
 
   const auto quadratic = [&](const Eigen::Ref<const Eigen::MatrixXd>& scaled) -> Eigen::VectorXd {
-    return (scaled * pair->inner - z).cwiseProduct(scaled).rowwise().sum();
+    return (scaled * pair.inner - z).cwiseProduct(scaled).rowwise().sum();
   };
   ExponentialMatrix matrix;
   matrix.u = z * precisions_.col(a).asDiagonal();
   const Eigen::MatrixXd scaled_b = z * precisions_.col(b).asDiagonal();
-  matrix.v.noalias() = pair->inner * scaled_b.transpose();
-  matrix.f = (log_signal_variance_[a] - 0.5 * pair->log_det_R) + 0.5 * quadratic(matrix.u).array();
+  matrix.v.noalias() = pair.inner * scaled_b.transpose();
+  matrix.f = (log_signal_variance_[a] - 0.5 * pair.log_det_R) + 0.5 * quadratic(matrix.u).array();
   matrix.g = log_signal_variance_[b] + 0.5 * quadratic(scaled_b).array();
   matrix.column_weights =
       a == b ? Eigen::VectorXd::Ones(model_.numPoints()) : Eigen::VectorXd(model_.beta.col(b));
@@ -200,7 +198,7 @@ bool GpMoments::predictPair(int a, int b, const Eigen::MatrixXd& z, const Eigen:
   const Eigen::MatrixXd second = u.transpose() * rows.asDiagonal() * u +
                                  scaled_b.transpose() * sums.columns.asDiagonal() * scaled_b +
                                  cross + cross.transpose();
-  const Eigen::MatrixXd& K = pair->inverse_R;
+  const Eigen::MatrixXd& K = pair.inverse_R;
   tape->d_sums.push_back({factor * (K.transpose() * first),
                           symmetricPart(0.5 * (factor * (K.transpose() * second * K) -
                                                total * (precision_sum.asDiagonal() * K)))});
@@ -275,7 +273,7 @@ Gaussian GpMoments::backward(const Tape& tape, const Moments& d_output, GpGradie
 /// and the same for b with i and j exchanged; for a = b the two parts are added.
 void GpMoments::pairToModel(int a, int b, double d_sum, const Eigen::MatrixXd& z,
                             const Eigen::MatrixXd& s, GpGradient* d_model) const {
-  const Pair pair = pairTerms(precisions_.col(a) + precisions_.col(b), s).value();
+  const Pair pair = pairTerms(precisions_.col(a) + precisions_.col(b), s);
   const Eigen::MatrixXd& T = pair.inner;
   const Eigen::MatrixXd u = z * precisions_.col(a).asDiagonal();
   const Eigen::MatrixXd v = z * precisions_.col(b).asDiagonal();
