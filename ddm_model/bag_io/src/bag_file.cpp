@@ -8,10 +8,11 @@
 #include <algorithm>
 #include <boost/algorithm/string/predicate.hpp>
 #include <boost/algorithm/string/trim.hpp>
-#include <cstring>
 
 namespace ddm {
 namespace {
+
+namespace text = boost::algorithm;
 
 constexpr char kMagic[] = "#ROSBAG V2.0\n";
 constexpr std::uint64_t kMaxChunk = 1U << 30U;  // [bytes]; rosbag writes 768 kB
@@ -30,23 +31,18 @@ const OtherFormat kOtherFormats[] = {
      "convert its folder with `rosbags-convert --src FOLDER --dst FILE.bag` (pip install rosbags)"},
     {"version https://git-lfs", "a pointer of Git LFS instead of the file",
      "download the file with `git lfs pull`"},
-    {"#ROSBAG V1", "a bag of format 1, which ROS wrote until 2010",
-     "convert it with `rosbag filter OLD.bag NEW.bag True`"},
-    {"#ROSRECORD V1", "a bag of format 1, which ROS wrote until 2010",
-     "convert it with `rosbag filter OLD.bag NEW.bag True`"},
-    {"\x1f\x8b", "compressed as a whole (gzip)", "unpack it with `gunzip` or `tar xzf`"},
+    {"#ROSBAG V1", "a bag of format 1 (until 2010)", "run `rosbag filter OLD.bag NEW.bag True`"},
+    {"#ROSRECORD V1", "a bag of format 1 (until 2010)", "run `rosbag filter OLD.bag NEW.bag True`"},
+    {"\x1f\x8b", "compressed by gzip", "unpack it with `gunzip` or `tar xzf`"},
+    {"BZh", "compressed by bzip2", "unpack it with `bunzip2` or `tar xjf`"},
+    {"\3757zXZ", "compressed by xz", "unpack it with `unxz` or `tar xJf`"},
+    {"\x28\xb5\x2f\xfd", "compressed by Zstandard", "unpack it with `unzstd`"},
     {"PK\x03\x04", "a zip archive", "unpack it with `unzip`"},
-    {"BZh", "compressed as a whole (bzip2)", "unpack it with `bunzip2` or `tar xjf`"},
-    {"\xfd"
-     "7zXZ",
-     "compressed as a whole (xz)", "unpack it with `unxz` or `tar xJf`"},
-    {"\x28\xb5\x2f\xfd", "compressed as a whole (Zstandard)", "unpack it with `unzstd`"},
     {"7z\xbc\xaf\x27\x1c", "a 7-Zip archive", "unpack it with `7z x`"},
     {"Rar!\x1a\x07", "a RAR archive", "unpack it with `unrar x`"}};
 constexpr const char* kWebPages[] = {"<!doctype", "<html", "<?xml"};  // after blanks, in any case
-constexpr char kTar[] = "ustar";
-constexpr std::size_t kTarAt = 257;
-constexpr std::uint32_t kLongestMagic = kTarAt + sizeof(kTar) - 1;
+constexpr char kTar[] = "ustar";         // in bytes [257, 262) of a tar archive
+constexpr std::size_t kFrontSize = 262;  // [bytes]
 
 /// Kinds of records (field `op`).
 enum : std::uint8_t { kMessage = 2, kBagHeader = 3, kChunk = 5, kChunkInfo = 6, kConnection = 7 };
@@ -62,89 +58,79 @@ template <class... Parts>
       textOf(parts..., ": it is cut short, damaged or no bag; copy it again or leave it out"));
 }
 
-[[noreturn]] void refuseFormat(const std::string& what, const std::string& remedy) {
-  refuseBag("is ", what, "; only bags of format 2.0 (ROS 1) are read: ", remedy);
-}
-
+/// @param front  first kFrontSize bytes of a file, or fewer if it is shorter
 void requireBag(const std::string& front) {
+  const auto refuse = [](const std::string& what, const std::string& remedy) {
+    refuseBag("is ", what, "; only bags of format 2.0 (ROS 1) are read: ", remedy);
+  };
   for (const OtherFormat& format : kOtherFormats) {
-    if (front.compare(0, format.magic.size(), format.magic) != 0) continue;
-    refuseFormat(format.what, format.remedy);
+    if (text::starts_with(front, format.magic)) refuse(format.what, format.remedy);
   }
   for (const char* begin : kWebPages) {
-    if (boost::algorithm::istarts_with(boost::algorithm::trim_left_copy(front), begin)) {
-      refuseFormat("a web page instead of the file", "download the file itself");
-    }
+    if (!text::istarts_with(text::trim_left_copy(front), begin)) continue;
+    refuse("a web page instead of the file", "download the file itself");
   }
-  if (front.size() > kTarAt && front.compare(kTarAt, sizeof(kTar) - 1, kTar) == 0) {
-    refuseFormat("a tar archive", "unpack it with `tar xf`");
+  if (front.size() == kFrontSize && text::ends_with(front, kTar)) {
+    refuse("a tar archive", "unpack it with `tar xf`");
   }
-  if (front.compare(0, sizeof(kMagic) - 1, kMagic) != 0) {
-    refuseDamage("does not begin as a bag of format 2.0");
-  }
-}
-
-/// Removes and returns the first bytes of the rest of a bag.
-std::string_view take(std::size_t size, std::string_view* left) {
-  if (size > left->size()) {
-    refuseDamage(size, " bytes are due where ", left->size(), " are left");
-  }
-  const std::string_view taken = left->substr(0, size);
-  left->remove_prefix(size);
-  return taken;
-}
-
-template <class Number>
-Number numberOf(std::string_view bytes) {
-  if (bytes.size() != sizeof(Number)) refuseDamage("a number has ", bytes.size(), " bytes");
-  Number value;
-  std::memcpy(&value, bytes.data(), sizeof(value));
-  return value;
+  if (!text::starts_with(front, kMagic)) refuseDamage("does not begin as a bag of format 2.0");
 }
 
 /// Removes and returns bytes that are preceded by their size.
-std::string_view takeSized(std::string_view* left) {
-  return take(numberOf<std::uint32_t>(take(4, left)), left);
+std::string takeSized(MessageBytes* stream) {
+  std::string bytes;
+  try {
+    stream->next(bytes);
+  } catch (const std::exception& e) {
+    refuseDamage("a record ", e.what());
+  }
+  return bytes;
 }
 
-/// Fields NAME=VALUE, each preceded by its size.
+/// Fields NAME=VALUE of a record.
 class Fields {
  public:
-  explicit Fields(std::string_view bytes) {
-    while (!bytes.empty()) {
-      const std::string_view field = takeSized(&bytes);
+  explicit Fields(const std::string& bytes) {
+    for (MessageBytes stream(bytes.data(), bytes.size()); stream.left() > 0;) {
+      const std::string field = takeSized(&stream);
       const std::size_t sign = field.find('=');
-      if (sign == std::string_view::npos) refuseDamage("a field has no name");
-      fields_[std::string(field.substr(0, sign))] = field.substr(sign + 1);
+      if (sign == std::string::npos) refuseDamage("a field has no name");
+      fields_[field.substr(0, sign)] = field.substr(sign + 1);
     }
   }
 
-  bool has(const std::string& name) const { return fields_.count(name) > 0; }
+  /// @return value of a field; empty if it is missing
   std::string text(const std::string& name) const {
     const auto found = fields_.find(name);
-    if (found == fields_.end()) refuseDamage("a record has no field ", name);
-    return std::string(found->second);
+    return found == fields_.end() ? "" : found->second;
   }
   template <class Number>
   Number number(const std::string& name) const {
-    return numberOf<Number>(text(name));
+    const std::string bytes = text(name);
+    if (bytes.size() != sizeof(Number)) {
+      refuseDamage("field ", name, " of a record has ", bytes.size(), " bytes");
+    }
+    return messageFromBytes<Number>(bytes.data(), bytes.size());
   }
 
  private:
-  std::map<std::string, std::string_view> fields_;
+  std::map<std::string, std::string> fields_;
 };
 
 struct Record {
-  explicit Record(std::string_view* left)
-      : fields(takeSized(left)), data(takeSized(left)), kind(fields.number<std::uint8_t>("op")) {}
+  /// Removes the record from the stream.
+  explicit Record(MessageBytes* stream)
+      : fields(takeSized(stream)),
+        data(takeSized(stream)),
+        kind(fields.number<std::uint8_t>("op")) {}
 
   void requireKind(std::uint8_t wanted) const {
-    if (kind != wanted)
-      refuseDamage("a record has the op ", int{kind}, " where ", int{wanted}, " is due");
+    if (kind == wanted) return;
+    refuseDamage("a record has the op ", int{kind}, " where ", int{wanted}, " is due");
   }
 
   Fields fields;
-  std::string_view data;
+  std::string data;
   std::uint8_t kind;
 };
 
@@ -152,7 +138,7 @@ struct Record {
 BagConnection connectionOf(const Record& record) {
   const Fields fields(record.data);
   return {record.fields.text("topic"), fields.text("type"), fields.text("md5sum"),
-          fields.has("callerid") ? fields.text("callerid") : ""};
+          fields.text("callerid")};
 }
 
 ros::Time timeOf(const Fields& fields) {
@@ -161,12 +147,13 @@ ros::Time timeOf(const Fields& fields) {
 }
 
 /// @return the records in a chunk
-std::string decompress(const Record& chunk) {
+std::string decompress(Record chunk) {
   const std::string compression = chunk.fields.text("compression");
   const auto size = chunk.fields.number<std::uint32_t>("size");
-  if (compression == "none") return std::string(chunk.data);
+  std::string& in = chunk.data;
+  if (compression == "none") return std::move(in);
   if (size > kMaxChunk) refuseDamage("it announces ", size, " bytes");
-  std::string in(chunk.data), out(size, '\0');
+  std::string out(size, '\0');
   const auto size_in = static_cast<unsigned>(in.size());
   unsigned written = size;
   bool whole = false;
@@ -189,15 +176,14 @@ BagFile::BagFile(std::istream* in) : in_(in) {
   in_->clear();
   in_->seekg(0, std::ios::end);
   const auto size = static_cast<std::uint64_t>(std::max<std::streamoff>(0, in_->tellg()));
-  requireBag(read(0, std::min<std::uint64_t>(kLongestMagic, size)));
-  const std::string front = read(0, std::min<std::uint64_t>(kMaxBagHeader, size));
-  std::string_view left(front);
-  take(sizeof(kMagic) - 1, &left);
-  const Record header(&left);
+  requireBag(read(0, std::min<std::uint64_t>(kFrontSize, size)));
+  const std::string front = read(sizeof(kMagic) - 1, std::min<std::uint64_t>(kMaxBagHeader, size));
+  MessageBytes front_bytes(front.data(), front.size());
+  const Record header(&front_bytes);
   header.requireKind(kBagHeader);
-  if (header.fields.has("encryptor") && !header.fields.text("encryptor").empty()) {
-    refuseBag("is encrypted by ", header.fields.text("encryptor"),
-              ": decrypt it with `rosbag decrypt`");
+  const std::string encryptor = header.fields.text("encryptor");
+  if (!encryptor.empty()) {
+    refuseBag("is encrypted by ", encryptor, ": decrypt it with `rosbag decrypt`");
   }
   index_ = header.fields.number<std::uint64_t>("index_pos");
   if (index_ == 0) refuseBag("was not closed: run `rosbag reindex` on it, then read it again");
@@ -205,7 +191,7 @@ BagFile::BagFile(std::istream* in) : in_(in) {
     refuseDamage("its index is due at byte ", index_, " of ", size);
   }
   const std::string index = read(index_, size);
-  left = index;
+  MessageBytes left(index.data(), index.size());
   const auto num_connections = header.fields.number<std::uint32_t>("conn_count");
   const auto num_chunks = header.fields.number<std::uint32_t>("chunk_count");
   while (connections_.size() < num_connections || chunks_.size() < num_chunks) {
@@ -215,8 +201,9 @@ BagFile::BagFile(std::istream* in) : in_(in) {
     } else {
       record.requireKind(kChunkInfo);
       std::set<std::uint32_t>& held = chunks_[record.fields.number<std::uint64_t>("chunk_pos")];
-      for (std::string_view counts = record.data; !counts.empty(); take(4, &counts)) {
-        held.insert(numberOf<std::uint32_t>(take(4, &counts)));
+      // Pairs of the number of a connection and the number of its messages.
+      for (std::size_t at = 0; at + 8 <= record.data.size(); at += 8) {
+        held.insert(messageFromBytes<std::uint32_t>(&record.data[at], 4));
       }
     }
   }
@@ -247,11 +234,11 @@ void BagFile::forEachMessage(const std::set<std::string>& topics,
         refuseDamage("it does not lie before the index at byte ", index_);
       }
       const std::string bytes = read(chunk->first, end);
-      std::string_view left(bytes);
-      const Record record(&left);
+      MessageBytes stream(bytes.data(), bytes.size());
+      Record record(&stream);
       record.requireKind(kChunk);
-      const std::string messages = decompress(record);
-      for (left = messages; !left.empty();) {
+      const std::string messages = decompress(std::move(record));
+      for (MessageBytes left(messages.data(), messages.size()); left.left() > 0;) {
         const Record message(&left);
         if (message.kind == kConnection) continue;  // the index lists them, too
         message.requireKind(kMessage);

@@ -14,6 +14,7 @@
 #include <boost/algorithm/string/join.hpp>
 #include <boost/algorithm/string/predicate.hpp>
 #include <cmath>
+#include <functional>
 #include <set>
 
 #include "bag_texts.h"
@@ -36,44 +37,40 @@ struct Values {
   std::vector<double> values;  ///< [N m]
 };
 
-template <class Message>
-Values numberFrom(const BagMessage& message) {
-  return {{}, {}, {static_cast<double>(parse<Message>(message).data)}};
+/// Reads the values of a message.
+using Reader = std::function<Values(const BagMessage&)>;
+
+/// @param take  takes the values from a parsed message
+template <class Message, class Take>
+Reader readerOf(const Take& take) {
+  return [take](const BagMessage& message) { return take(parse<Message>(message)); };
 }
 
-template <class Message>
-Values arrayFrom(const BagMessage& message) {
-  const auto data = parse<Message>(message).data;
-  return {{}, {}, std::vector<double>(data.begin(), data.end())};
-}
+const auto kNumber = [](const auto& message) {
+  return Values{{}, {}, {static_cast<double>(message.data)}};
+};
+const auto kArray = [](const auto& message) {
+  return Values{{}, {}, std::vector<double>(message.data.begin(), message.data.end())};
+};
 
-Values torqueFrom(const BagMessage& message) {
-  const auto torque = parse<ddm_msgs::Torque>(message);
-  return {torque.header.stamp, {}, torque.torque};
-}
-
-Values wrenchFrom(const BagMessage& message) {
-  const auto wrench = parse<geometry_msgs::WrenchStamped>(message);
-  const geometry_msgs::Vector3 &f = wrench.wrench.force, &t = wrench.wrench.torque;
-  return {wrench.header.stamp,
-          {"force.x", "force.y", "force.z", "torque.x", "torque.y", "torque.z"},
-          {f.x, f.y, f.z, t.x, t.y, t.z}};
-}
-
-Values effortsFrom(const BagMessage& message) {
-  const auto joints = parse<sensor_msgs::JointState>(message);
-  return {joints.header.stamp, joints.name, joints.effort};
-}
-
-/// Functions that read a message, by its type.
-const std::map<std::string, Values (*)(const BagMessage&)> kReaders = {
-    {"ddm_msgs/Torque", torqueFrom},
-    {"std_msgs/Float64", numberFrom<std_msgs::Float64>},
-    {"std_msgs/Float64MultiArray", arrayFrom<std_msgs::Float64MultiArray>},
-    {"std_msgs/Float32", numberFrom<std_msgs::Float32>},
-    {"std_msgs/Float32MultiArray", arrayFrom<std_msgs::Float32MultiArray>},
-    {kWrench, wrenchFrom},
-    {kJoints, effortsFrom}};
+/// Readers of messages, by type.
+const std::map<std::string, Reader> kReaders = {
+    {"ddm_msgs/Torque", readerOf<ddm_msgs::Torque>([](const auto& torque) {
+       return Values{torque.header.stamp, {}, torque.torque};
+     })},
+    {"std_msgs/Float64", readerOf<std_msgs::Float64>(kNumber)},
+    {"std_msgs/Float64MultiArray", readerOf<std_msgs::Float64MultiArray>(kArray)},
+    {"std_msgs/Float32", readerOf<std_msgs::Float32>(kNumber)},
+    {"std_msgs/Float32MultiArray", readerOf<std_msgs::Float32MultiArray>(kArray)},
+    {kWrench, readerOf<geometry_msgs::WrenchStamped>([](const auto& message) {
+       const geometry_msgs::Vector3 &f = message.wrench.force, &t = message.wrench.torque;
+       return Values{message.header.stamp,
+                     {"force.x", "force.y", "force.z", "torque.x", "torque.y", "torque.z"},
+                     {f.x, f.y, f.z, t.x, t.y, t.z}};
+     })},
+    {kJoints, readerOf<sensor_msgs::JointState>([](const auto& joints) {
+       return Values{joints.header.stamp, joints.name, joints.effort};
+     })}};
 
 std::string listOf(const Names& names) {
   return names.empty() ? "nothing" : boost::algorithm::join(names, ", ");
