@@ -99,6 +99,10 @@ FAULTS = {
     has_no_goal: "The goal has been seen"}
 
 
+def check_of(data, name):
+    return next(check for check in verdict.verdict(data) if check.name == name)
+
+
 def failed(data):
     return [check.name for check in verdict.verdict(data) if check.ok is False]
 
@@ -120,17 +124,18 @@ def test_images_before_the_first_torque_and_after_the_last_are_not_of_the_trial(
     first, last = data.frames["time_s"][0], data.frames["time_s"][-1]
     times = np.concatenate([first - 0.2 * np.arange(1, 1500), last + 0.2 * np.arange(1, 20)])  # five minutes of waiting
     data.unpaired["images without torque"] = np.array([(bag, time) for bag in (0, 1) for time in times]).T
-    assert failed(data) == [] and verdict.check_pairs(data)[1].startswith("0 of 400 ")
+    assert failed(data) == [] and check_of(data, "Images have their torques").figure.startswith("0 of 400 ")
 
 
 def test_the_goal_may_have_been_seen_in_bags_that_are_not_these():
-    for features in (GoodData().features, None):
+    for with_bags in (True, False):
         data = GoodData()
-        data.features = features
+        if not with_bags:
+            data.bags = data.features = None
         never_saw_the_goal(data)
         for seen in (1.5, 0.4):
             data.model.support_states = np.array([[0.0, -1.0], [0.0, seen]])
-            assert verdict.check_goal(data)[0] == (seen == 1.5)
+            assert check_of(data, "The goal has been seen").ok == (seen == 1.5)
 
 
 def test_what_could_not_be_predicted_is_not_known_and_a_model_alone_is_judged_by_what_it_says_of_itself():

@@ -3,6 +3,7 @@
 import collections
 
 import numpy as np
+import pandas
 
 # ok: True, False, or None if the check could not be made. figure: the measurement. rule: the value that it should have.
 # remedy: what a user can do if the check fails.
@@ -49,188 +50,153 @@ def spread_of(features):
 
 def intervals(data):
     """All intervals between consecutive frames of a bag, divided by the median interval of that bag."""
-    out = []
-    for bag in np.unique(data.frames["bag"]):
-        steps = np.diff(data.frames["time_s"][data.frames["bag"] == bag])
-        if len(steps) > 0:
-            out.append(steps / np.median(steps))
-    return np.concatenate(out) if out else np.ones(0)
+    steps = pandas.Series(data.frames["time_s"]).groupby(data.frames["bag"]).diff()
+    return (steps / steps.groupby(data.frames["bag"]).transform("median")).dropna().to_numpy()
 
 
 def num_lost(data):
     """Number of images without a torque between the first and last frame of their bag. Earlier images are taken while a
     robot waits for its reset, and later ones after the end of the trial.
     """
+    spans = pandas.Series(data.frames["time_s"]).groupby(data.frames["bag"]).agg(["min", "max"])
     bag_of, time = data.unpaired["images without torque"]
-    number = 0
-    for bag in np.unique(data.frames["bag"]):
-        frames = data.frames["time_s"][data.frames["bag"] == bag]
-        number += np.count_nonzero((bag_of == bag) & (time >= np.min(frames)) & (time <= np.max(frames)))
-    return number
+    first, last = spans.reindex(bag_of).to_numpy().T
+    return np.count_nonzero((time >= first) & (time <= last))
 
 
-def check_pairs(data):
-    lost = num_lost(data)
-    share = lost / (lost + len(data.features))
-    return share <= LOST, "%d of %d images (%s) have no torque" % (lost, lost + len(data.features), percent(share))
-
-
-def check_rate(data):
-    steps = intervals(data)
-    medians = data.bags["interval_s"]
+def judge_data(data, check):
+    """Checks of the bags. check: function that adds a check."""
+    lost, paired = num_lost(data), len(data.features)
+    share = lost / (lost + paired)
+    check("Images have their torques", share <= LOST,
+          "%d of %d images (%s) have no torque" % (lost, lost + paired, percent(share)),
+          "at most %s, from the first image that has one to the last: each one splits the trial, and nothing is predicted "
+          "across it" % percent(LOST),
+          "Stamp each torque with the header stamp of the image that it answers, or command one at least every data_set/dt.")
+    steps, medians = intervals(data), data.bags["interval_s"]
     share = float(np.mean(np.abs(steps - 1.0) > JITTER)) if len(steps) else 0.0
-    even = bool(np.max(medians) <= 1.1 * np.min(medians))
-    return share <= OFF_BEAT and even, "%s of the intervals are more than %s off; the bags' median interval is %s s" % (
-        percent(share), percent(JITTER),
-        "%.4g" % medians[0] if np.ptp(medians) == 0 else "%.4g to %.4g" % (min(medians), max(medians)))
-
-
-def check_camera(data):
-    kinds = sorted(set(data.bags["camera"]))
-    return len(kinds) == 1, "images are " + ", ".join(kinds)
-
-
-def check_variation(data):
-    return data.variation >= VARIATION, "a pixel is %.3g grey away from its mean (root mean square; black 0, white 1)" % data.variation
-
-
-def limits(data):
-    return ", ".join("%g" % limit for limit in data.max_torque)
-
-
-def check_excitation(data):
+    check("Frames come at one rate", share <= OFF_BEAT and np.max(medians) <= 1.1 * np.min(medians),
+          "%s of the intervals are more than %s off; the bags' median interval is %s s" % (
+              percent(share), percent(JITTER),
+              "%.4g" % medians[0] if np.ptp(medians) == 0 else "%.4g to %.4g" % (min(medians), max(medians))),
+          "at most %s, and medians within 10 %% of each other: the model takes frames as equally far apart" % percent(OFF_BEAT),
+          "Take every image of the camera or a fixed fraction of them, stamp images when they are taken, and look for frames "
+          "lost on the way (rostopic hz, a larger queue, image compression).")
+    cameras = sorted(set(data.bags["camera"]))
+    check("One camera setting", len(cameras) == 1, "images are " + ", ".join(cameras),
+          "one size and encoding: training refuses to mix them", "Leave out the bags of other cameras, or record them again.")
+    check("Images differ", data.variation >= VARIATION,
+          "a pixel is %.3g grey away from its mean (root mean square; black 0, white 1)" % data.variation,
+          "at least %g, about the noise of a camera: there must be something to see" % VARIATION,
+          "See that the robot moves and fills the image: crop the image to it, light it, and fix the camera's exposure.")
+    limits = ", ".join("%g" % limit for limit in data.max_torque)
     shares = data.torques.std(axis=0) / data.max_torque
-    words = ", ".join("motor %d: %s" % (i + 1, percent(share)) for i, share in enumerate(shares))
-    return np.min(shares) >= EXCITATION, "standard deviation over model/max_torque = %s N m: %s" % (limits(data), words)
-
-
-def check_torque_range(data):
+    check("Torques are excited", np.min(shares) >= EXCITATION,
+          "standard deviation over model/max_torque = %s N m: %s" % (
+              limits, ", ".join("motor %d: %s" % (i + 1, percent(share)) for i, share in enumerate(shares))),
+          "at least %s for each motor; uniformly random torques have 58 %%" % percent(EXCITATION),
+          "Record trials with random torques over the motor's whole range, held for a few frames; if the motor cannot do more, "
+          "set model/max_torque to what it can, and train again.")
     largest = np.max(np.abs(data.torques), axis=0)
-    return np.all(largest <= 1.05 * data.max_torque), "the largest is %s N m, model/max_torque is %s N m" % (
-        ", ".join("%.4g" % torque for torque in largest), limits(data))
+    check("Torques are within the model's range", np.all(largest <= 1.05 * data.max_torque),
+          "the largest is %s N m, model/max_torque is %s N m" % (", ".join("%.4g" % torque for torque in largest), limits),
+          "at most model/max_torque: beyond it f saturates",
+          "Set model/max_torque to the limit of the motor and train again; check the unit of the torque topic (N m).")
 
 
-def check_frames(data):
-    learned, components = data.model.info["frames"], data.options["pca_dim"]
-    return learned >= FRAMES_PER_COMPONENT * components, "%d frames learned from, %d principal components" % (learned, components)
-
-
-def check_shown(data):
-    return len(data.features) >= FEW_FRAMES, "%d frames in these bags" % len(data.features)
-
-
-def check_components(data):
+def judge_features(data, check):
+    """Checks of the features of the bags' images."""
+    check("Enough frames to judge by", len(data.features) >= FEW_FRAMES, "%d frames in these bags" % len(data.features),
+          "at least %d: fewer make all figures below unsure" % FEW_FRAMES, "Record longer bags.")
     kept = kept_share(data, "pca_rms")
-    return kept >= KEPT_BY_PCA, "the model's %s principal components keep %s of what differs between these images" % (
-        data.options["pca_dim"], percent(kept))
-
-
-def check_features(data):
+    check("Enough components, for such images", kept >= KEPT_BY_PCA,
+          "the model's %s principal components keep %s of what differs between these images" % (
+              data.options["pca_dim"], percent(kept)),
+          "at least %s" % percent(KEPT_BY_PCA),
+          "If the spectrum falls slowly, raise model/pca_dim (it needs as many frames, and more) or crop the image to the "
+          "robot; if these bags look other than those learned from, train with them, too.")
     kept = kept_share(data, "reconstruction_rms")
-    return kept >= KEPT_BY_FEATURES, "reconstructions from %s features keep %s of what differs between the images" % (
-        data.options["feature_dim"], percent(kept))
-
-
-def check_spread(data):
+    check("Features hold the image", kept >= KEPT_BY_FEATURES,
+          "reconstructions from %s features keep %s of what differs between the images" % (
+              data.options["feature_dim"], percent(kept)),
+          "at least %s: what a feature does not hold, no plan can steer" % percent(KEPT_BY_FEATURES),
+          "Train with more starts (training/num_starts) or iterations; wider encoder and decoder; model/feature_dim must be at "
+          "least the number of joints that move.")
     spread = spread_of(data.features)
-    return spread >= COLLAPSED, "the distance of features to their mean is %.3g (root mean square)" % spread
+    check("Features tell images apart", spread >= COLLAPSED,
+          "the distance of features to their mean is %.3g (root mean square)" % spread,
+          "at least %g; features lie within 1.57" % COLLAPSED,
+          "Train again with another seed or more starts; lower training/weight_decay.")
 
 
-def first_third(data):
-    """Number of steps ahead that the checks judge. Later errors accumulate, and the controller plans again before they
+def judge_predictions(data, check):
+    """Checks of the first third of the steps ahead. Later errors accumulate, and the controller plans again before they
     matter."""
-    return (len(data.errors["steps"]) + 2) // 3
+    rmse, repeat, blind = (data.errors[name] for name in ("rmse", "rmse_repeat", "rmse_mean_torque"))
+    near = (len(rmse) + 2) // 3
+    beats = responds = None
+    figure, effect = "no segment of frames without a gap is longer than model/order", "no prediction could be made"
+    if near > 0:
+        ratios = rmse / np.maximum(repeat, 1e-12)
+        ahead = int(np.argmax(np.append(ratios, np.inf) >= 1.0))
+        beats = np.min(ratios[:near]) <= BEATS_REPEAT
+        figure = (
+            "at best %.2f times the error of repeating, in the first %d step(s); 1 step ahead %.3g grey, repeating %.3g; "
+            "predictions are the better ones up to %d of %d step(s)" % (
+                np.min(ratios[:near]), near, rmse[0], repeat[0], ahead, len(ratios)))
+        ratio = blind[near - 1] / max(rmse[near - 1], 1e-12)
+        responds = ratio >= TORQUE_EFFECT
+        effect = "with the mean torque instead of the true ones, the model is wrong by %.2f times as much %d step(s) ahead" % (
+            ratio, near)
+    check("Predictions beat repeating the last frame", beats, figure,
+          "somewhere in the first third of the steps at most %g of the error of the last frame repeated" % BEATS_REPEAT,
+          "More and better excited data first; longer bags without gaps if nothing could be predicted. Then "
+          "training/prediction_steps 4 with residual and increments (as preset efficient), more starts, or training/max_delay "
+          "1 if the camera may be late.")
+    check("The model responds to the torque", responds, effect,
+          "at least %g times the error with the true torques" % TORQUE_EFFECT,
+          "Without effect nothing can be steered. Check that the recorded torque is the one that the motor got, and that its "
+          "stamp is that of the image before it acts; excite the motor more; learn from more frames.")
 
 
-def check_prediction(data):
-    near = first_third(data)
-    if near == 0:
-        return None, "no segment of frames without a gap is longer than model/order"
-    ratios = data.errors["rmse"] / np.maximum(data.errors["rmse_repeat"], 1e-12)
-    ahead = int(np.argmax(np.append(ratios, np.inf) >= 1.0))
-    return np.min(ratios[:near]) <= BEATS_REPEAT, (
-        "at best %.2f times the error of repeating, in the first %d step(s); 1 step ahead %.3g grey, repeating %.3g; predictions "
-        "are the better ones up to %d of %d step(s)" % (
-            np.min(ratios[:near]), near, data.errors["rmse"][0], data.errors["rmse_repeat"][0], ahead, len(ratios)))
+def judge_frames(data, check):
+    """Check of the model alone."""
+    learned, components = data.model.info["frames"], data.options["pca_dim"]
+    check("Enough frames to learn from", learned >= FRAMES_PER_COMPONENT * components,
+          "%d frames learned from, %d principal components" % (learned, components),
+          "at least %g frames for each component; 10 are comfortable" % FRAMES_PER_COMPONENT,
+          "Record more trials and train again, or lower model/pca_dim.")
 
 
-def check_torque_effect(data):
-    near = first_third(data)
-    if near == 0:
-        return None, "no prediction could be made"
-    ratio = data.errors["rmse_mean_torque"][near - 1] / max(data.errors["rmse"][near - 1], 1e-12)
-    return ratio >= TORQUE_EFFECT, (
-        "with the mean torque instead of the true ones, the model is wrong by %.2f times as much %d step(s) ahead" % (ratio, near))
-
-
-def check_goal(data):
-    if data.goal_feature is None:
-        return False, "the model has no goal image"
+def judge_goal(data, check):
+    """Check of the goal against all states that the model keeps and, if there are bags, their frames."""
+    ok, figure = data.goal_feature is not None, "the model has no goal image"
     features = data.model.support_states if data.features is None else data.features
-    if len(features) == 0:
-        return True, "the model has a goal image"
-    seen = np.concatenate([data.model.support_states, features])
-    near = np.min(np.linalg.norm(seen - data.goal_feature, axis=1)) / max(spread_of(features), 1e-12)
-    return near <= GOAL_DISTANCE, (
-        "of all frames here and of those that the model keeps, the nearest to the goal is %.2f spreads of the features away" % near)
-
-
-# Name, function that returns (ok, figure), rule and remedy of each check, in the order in which a user should fix
-# problems, starting with the data. OF_MODEL has the checks that need no bags.
-CHECKS = (
-    ("Images have their torques", check_pairs,
-     "at most %s, from the first image that has one to the last: each one splits the trial, and nothing is predicted across it"
-     % percent(LOST),
-     "Stamp each torque with the header stamp of the image that it answers, or command one at least every data_set/dt."),
-    ("Frames come at one rate", check_rate,
-     "at most %s, and medians within 10 %% of each other: the model takes frames as equally far apart" % percent(OFF_BEAT),
-     "Take every image of the camera or a fixed fraction of them, stamp images when they are taken, and look for frames lost "
-     "on the way (rostopic hz, a larger queue, image compression)."),
-    ("One camera setting", check_camera, "one size and encoding: training refuses to mix them",
-     "Leave out the bags of other cameras, or record them again."),
-    ("Images differ", check_variation, "at least %g, about the noise of a camera: there must be something to see" % VARIATION,
-     "See that the robot moves and fills the image: crop the image to it, light it, and fix the camera's exposure."),
-    ("Torques are excited", check_excitation,
-     "at least %s for each motor; uniformly random torques have 58 %%" % percent(EXCITATION),
-     "Record trials with random torques over the motor's whole range, held for a few frames; if the motor cannot do more, set "
-     "model/max_torque to what it can, and train again."),
-    ("Torques are within the model's range", check_torque_range, "at most model/max_torque: beyond it f saturates",
-     "Set model/max_torque to the limit of the motor and train again; check the unit of the torque topic (N m)."),
-    ("Enough frames to learn from", check_frames,
-     "at least %g frames for each component; 10 are comfortable" % FRAMES_PER_COMPONENT,
-     "Record more trials and train again, or lower model/pca_dim."),
-    ("Enough frames to judge by", check_shown, "at least %d: fewer make all figures below unsure" % FEW_FRAMES,
-     "Record longer bags."),
-    ("Enough components, for such images", check_components, "at least %s" % percent(KEPT_BY_PCA),
-     "If the spectrum falls slowly, raise model/pca_dim (it needs as many frames, and more) or crop the image to the robot; if "
-     "these bags look other than those learned from, train with them, too."),
-    ("Features hold the image", check_features,
-     "at least %s: what a feature does not hold, no plan can steer" % percent(KEPT_BY_FEATURES),
-     "Train with more starts (training/num_starts) or iterations; wider encoder and decoder; model/feature_dim must be at least "
-     "the number of joints that move."),
-    ("Features tell images apart", check_spread, "at least %g; features lie within 1.57" % COLLAPSED,
-     "Train again with another seed or more starts; lower training/weight_decay."),
-    ("Predictions beat repeating the last frame", check_prediction,
-     "somewhere in the first third of the steps at most %g of the error of the last frame repeated" % BEATS_REPEAT,
-     "More and better excited data first; longer bags without gaps if nothing could be predicted. Then training/prediction_steps "
-     "4 with residual and increments (as preset efficient), more starts, or training/max_delay 1 if the camera may be late."),
-    ("The model responds to the torque", check_torque_effect,
-     "at least %g times the error with the true torques" % TORQUE_EFFECT,
-     "Without effect nothing can be steered. Check that the recorded torque is the one that the motor got, and that its stamp is "
-     "that of the image before it acts; excite the motor more; learn from more frames."),
-    ("The goal has been seen", check_goal, "a goal image, at most %g spreads of the features from a frame" % GOAL_DISTANCE,
-     "Record goal_image into the bags, or train with --goal IMAGE. Let the robot come near the goal while recording (by hand, or "
-     "by more trials of an experiment): the model knows only what it has seen."))
-OF_MODEL = (check_frames, check_goal)
+    if ok:
+        figure = "the model has a goal image"
+    if ok and len(features) > 0:
+        seen = np.concatenate([data.model.support_states, features])
+        near = np.min(np.linalg.norm(seen - data.goal_feature, axis=1)) / max(spread_of(features), 1e-12)
+        ok = near <= GOAL_DISTANCE
+        figure = ("of all frames here and of those that the model keeps, the nearest to the goal is %.2f spreads of the "
+                  "features away" % near)
+    check("The goal has been seen", ok, figure,
+          "a goal image, at most %g spreads of the features from a frame" % GOAL_DISTANCE,
+          "Record goal_image into the bags, or train with --goal IMAGE. Let the robot come near the goal while recording (by "
+          "hand, or by more trials of an experiment): the model knows only what it has seen.")
 
 
 def verdict(data):
-    """Returns all checks of a ModelData."""
+    """Returns all checks of a ModelData, in the order in which a user should fix problems. Without bags, only those of
+    the model."""
+    of_bags = (judge_data, judge_frames, judge_features, judge_predictions, judge_goal)
     checks = []
-    for name, check, rule, remedy in CHECKS:
-        if data.bags is not None or check in OF_MODEL:
-            ok, figure = check(data)
-            checks.append(Check(name, ok if ok is None else bool(ok), figure, rule, remedy))
+
+    def check(name, ok, *words):
+        checks.append(Check(name, ok if ok is None else bool(ok), *words))
+
+    for judge in of_bags if data.bags is not None else (judge_frames, judge_goal):
+        judge(data, check)
     return checks
 
 
