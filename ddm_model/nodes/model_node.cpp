@@ -12,9 +12,8 @@
 #include <diagnostic_updater/diagnostic_updater.h>
 #include <ros/ros.h>
 
+#include <cmath>
 #include <cstdint>
-#include <cstdio>
-#include <map>
 #include <mutex>
 #include <string>
 
@@ -25,25 +24,15 @@ const ros::WallDuration kFeedbackPeriod(0.05);
 
 using Status = diagnostic_updater::DiagnosticStatusWrapper;
 
-std::string textOf(const char* format, double value) {
-  char text[80];
-  std::snprintf(text, sizeof(text), format, value);
-  return text;
-}
-
 /// Health of this node on /diagnostics: the running training, or the end of the last one. Published
 /// once per `~diagnostic_period` (1 s) of wall time.
 class TrainingHealth {
  public:
   TrainingHealth(const ros::NodeHandle& nh, const ros::NodeHandle& pnh) : updater_(nh, pnh) {
-    status_.summary(Status::OK, "no model yet");
     updater_.setHardwareID("none");
     updater_.add("training", [this](Status& status) {
       const std::lock_guard<std::mutex> lock(mutex_);
-      status.summary(status_);
-      status.values = status_.values;
-      if (!since_.isZero())
-        status.addf("for [s]", "%.1f", (ros::SteadyTime::now() - since_).toSec());
+      status.summary(level_, text_);
     });
     // Updater::update() uses simulated time, which stands still during a training.
     timer_ =
@@ -52,20 +41,16 @@ class TrainingHealth {
   }
 
   /// Sets the status; any thread may call this function.
-  /// @param is_new  true: a new state begins; false: only its numbers change
-  void set(std::uint8_t level, std::uint32_t trial, const std::string& text,
-           const std::map<std::string, double>& values = {}, bool is_new = true) {
+  void set(std::uint8_t level, std::uint32_t trial, const std::string& text) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    status_.clear();
-    status_.summary(level, "trial " + std::to_string(trial) + ": " + text);
-    for (const auto& value : values) status_.addf(value.first, "%.4g", value.second);
-    if (is_new) since_ = ros::SteadyTime::now();
+    level_ = level;
+    text_ = "trial " + std::to_string(trial) + ": " + text;
   }
 
  private:
-  std::mutex mutex_;  // guards status_ and since_
-  Status status_;
-  ros::SteadyTime since_;  // start or end of the training; zero: none yet
+  std::mutex mutex_;  // guards level_ and text_
+  std::uint8_t level_ = Status::OK;
+  std::string text_ = "no model yet";
   diagnostic_updater::Updater updater_;
   ros::SteadyTimer timer_;
 };
@@ -109,12 +94,11 @@ class ModelNode {
         server_.setAborted(result, training.message);
       } else {
         publish(*training.model, &result);
-        ROS_INFO("trial %u: learned from %u frames in %.2f s, V_R %.4g, V_P %.4g", goal->trial,
-                 result.frames, result.train_time, result.v_r, result.v_p);
-        health_.set(Status::OK, trial_, textOf("trained in %.2f s", result.train_time),
-                    {{"frames learned from", result.frames},
-                     {"V_R [grey^2]", result.v_r},
-                     {"V_P [grey^2]", result.v_p}});
+        const std::string text =
+            textOf("trained on ", result.frames, " frames in ", result.train_time, " s, V_R ",
+                   result.v_r, " grey^2, V_P ", result.v_p, " grey^2");
+        ROS_INFO_STREAM("trial " << goal->trial << ": " << text);
+        health_.set(Status::OK, trial_, text);
         server_.setSucceeded(result);
       }
     } catch (const ReadingCancelled& e) {
@@ -142,12 +126,10 @@ class ModelNode {
   }
 
   bool reportProgress(const TrainingProgress& progress) {
-    const double percent = 100.0 * progress.fraction_done;
-    health_.set(Status::OK, trial_, textOf("training, %.0f %% of the iterations allowed", percent),
-                {{"iteration", progress.iteration},
-                 {"V_R [grey^2]", progress.v_r},
-                 {"V_P [grey^2]", progress.v_p}},
-                /*is_new=*/false);
+    health_.set(Status::OK, trial_,
+                textOf("training, ", std::lround(100.0 * progress.fraction_done),
+                       " % of the iterations allowed, V_R ", progress.v_r, " grey^2, V_P ",
+                       progress.v_p, " grey^2"));
     const ros::SteadyTime now = ros::SteadyTime::now();
     if (now - last_feedback_ >= kFeedbackPeriod) {
       last_feedback_ = now;

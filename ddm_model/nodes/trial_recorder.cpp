@@ -45,19 +45,175 @@ void requireNew(const std::string& path) {
 /// node needs a spinner with at least two threads, because stop() waits for messages on their way.
 class TrialRecorder {
  public:
-  TrialRecorder(ros::NodeHandle nh, const BagOptions& bag, const RecorderOptions& options);
+  TrialRecorder(ros::NodeHandle nh, const BagOptions& bag, const RecorderOptions& options)
+      : bag_options_(bag), options_(options), transport_(nh) {
+    // Without TCP_NODELAY, TCP holds an image back until the one before is acknowledged.
+    const auto no_delay = ros::TransportHints().tcpNoDelay();
+    goal_sub_ = nh.subscribe<sensor_msgs::Image>(topics::kGoalImage, 1,
+                                                 [this](const sensor_msgs::ImageConstPtr& goal) {
+                                                   const std::lock_guard<std::mutex> lock(mutex_);
+                                                   goal_ = goal;
+                                                   changed_.notify_all();
+                                                 });
+    image_sub_ = transport_.subscribe(
+        topics::kImage, kQueue, [this](const sensor_msgs::ImageConstPtr& image) { record(*image); },
+        ros::VoidPtr(), image_transport::TransportHints("raw", no_delay));
+    torque_sub_ = nh.subscribe<ddm_msgs::Torque>(
+        topics::kAppliedTorque, kQueue,
+        [this](const ddm_msgs::TorqueConstPtr& torque) { recordApplied(*torque); },
+        ros::VoidConstPtr(), no_delay);
+    start_server_ = nh.advertiseService(topics::kStartRecording, &TrialRecorder::start, this);
+    stop_server_ = nh.advertiseService(topics::kStopRecording, &TrialRecorder::stop, this);
+  }
 
  private:
-  bool start(ddm_msgs::StartRecording::Request& request,
-             ddm_msgs::StartRecording::Response& response);
-  bool stop(ddm_msgs::StopRecording::Request& request, ddm_msgs::StopRecording::Response& response);
-  void writeGoal(BagWriter* bag) const;
   template <class Message>
-  void record(const Message& message);
-  void recordApplied(const ddm_msgs::Torque& torque);
-  bool hasGoal(const ddm_msgs::StopRecording::Request& request) const;
-  bool complete(const ddm_msgs::StopRecording::Request& request) const;
-  std::string shortcoming(const ddm_msgs::StopRecording::Request& request) const;
+  void record(const Message& message) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (bag_ == nullptr || !error_.empty()) return;
+    if (!after_.isZero() && message.header.stamp <= after_) return;
+    try {
+      bag_->write(message);
+    } catch (const std::exception& e) {
+      error_ = e.what();
+      ROS_ERROR_STREAM("recording stopped: " << error_);
+    }
+    changed_.notify_all();
+  }
+
+  void recordApplied(const ddm_msgs::Torque& torque) {
+    if (!torque.torque.empty()) return record(torque);
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (bag_ == nullptr) return;
+    unanswered_.insert(torque.header.stamp);
+    changed_.notify_all();
+  }
+
+  /// Writes the goal image with the stamp of the first image, so that the bag does not begin earlier.
+  /// The first image may precede the trial: a robot publishes images during its reset, but training
+  /// uses only those from the first torque to the last. The goal image is written at the end, because
+  /// it may arrive after the first images.
+  void writeGoal(BagWriter* bag) const {
+    if (goal_ != nullptr && !bag->images().empty()) bag->writeGoal(*goal_, *bag->images().begin());
+  }
+
+  bool start(ddm_msgs::StartRecording::Request& request,
+             ddm_msgs::StartRecording::Response& response) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (bag_ != nullptr && request.path.empty()) {
+      after_ = request.after;
+      response.success = true;
+      return true;
+    }
+    std::unique_ptr<BagWriter> bag;
+    try {
+      requireNew(request.path);
+      bag = std::make_unique<BagWriter>(request.path, bag_options_);
+    } catch (const std::exception& e) {
+      response.message = e.what() + std::string(bag_ == nullptr ? "" : "; the recording goes on");
+      ROS_ERROR_STREAM(response.message);
+      return true;
+    }
+    if (bag_ != nullptr) ROS_WARN("a recording was not stopped: its bag stays *.active");
+    bag_ = std::move(bag);
+    ++num_recordings_;
+    changed_.notify_all();  // wakes a stop() that still waits for the old recording
+    error_.clear();
+    after_ = request.after;
+    unanswered_.clear();
+    response.success = true;
+    return true;
+  }
+
+  bool hasGoal(const ddm_msgs::StopRecording::Request& request) const {
+    return request.goal.isZero() || (goal_ != nullptr && goal_->header.stamp == request.goal);
+  }
+
+  /// @return whether the bag has all images of the trial and a report of the torque after each of
+  ///         them
+  bool complete(const ddm_msgs::StopRecording::Request& request) const {
+    const std::set<ros::Time>& images = bag_->images();
+    if (images.size() < request.num_steps) return false;
+    if (!hasGoal(request)) return false;
+    auto end = images.end();
+    if (!request.last.isZero()) {
+      end = images.upper_bound(request.last);
+      if (images.count(request.last) == 0) return false;
+    } else if (request.num_steps > 0) {
+      end = std::next(images.begin(), request.num_steps);
+    }
+    return std::distance(images.begin(), end) >= request.num_steps &&
+           std::all_of(images.begin(), end, [this](const ros::Time& stamp) {
+             return bag_->torques().count(stamp) + unanswered_.count(stamp) > 0;
+           });
+  }
+
+  /// @return why the bag does not contain the trial; empty if it does
+  std::string shortcoming(const ddm_msgs::StopRecording::Request& request) const {
+    if (request.num_steps == 0) return "";
+    std::ostringstream text;
+    if (!hasGoal(request)) {
+      text << "no goal image with stamp " << request.goal << " came on " << goal_sub_.getTopic()
+           << " within recorder/timeout = " << options_.timeout << " s, ";
+      if (goal_ == nullptr) {
+        text << "nor any other";
+      } else {
+        text << "the last one has stamp " << goal_->header.stamp;
+      }
+      text << ": publish it with the stamp that reset answers";
+    } else if (!complete(request)) {
+      text << "of " << request.num_steps << " images and torques that are due, the bag holds "
+           << bag_->images().size() << " and " << bag_->torques().size() << ", and "
+           << bag_->numFrames() << " pairs of them after recorder/timeout = " << options_.timeout
+           << " s; whether a torque acted on the others was not reported: publish "
+           << torque_sub_.getTopic() << " for each image";
+    } else if (bag_->numFrames() == 0) {
+      text << "no torque acted in time: there is nothing to learn from in " << bag_->images().size()
+           << " images";
+    }
+    return text.str();
+  }
+
+  bool stop(ddm_msgs::StopRecording::Request& request,
+            ddm_msgs::StopRecording::Response& response) {
+    std::unique_lock<std::mutex> lock(mutex_);
+    if (bag_ == nullptr) {
+      response.message = "nothing is being recorded: call start_recording first";
+      return true;
+    }
+    if (stopping_ == num_recordings_) {  // a second wait would block the last thread
+      response.message = "this recording is being stopped already";
+      return true;
+    }
+    // Other services run during the wait, so that another recording may replace this one.
+    const int recording = stopping_ = num_recordings_;
+    const auto replaced = [&] { return bag_ == nullptr || num_recordings_ != recording; };
+    const auto decided = [&] { return replaced() || !error_.empty() || complete(request); };
+    // Waits in slices: if the process is paused, at most one slice is lost, and messages that arrived
+    // meanwhile are still read.
+    for (double left = options_.timeout; left > 0.0; left -= kSlice.count()) {
+      if (changed_.wait_for(lock, std::min(kSlice, Seconds(left)), decided)) break;
+    }
+    if (replaced()) {
+      response.message = "another recording was started or stopped meanwhile";
+      return true;
+    }
+    if (error_.empty()) error_ = shortcoming(request);
+    const std::unique_ptr<BagWriter> bag = std::move(bag_);
+    response.images = static_cast<std::uint32_t>(bag->images().size());
+    response.torques = static_cast<std::uint32_t>(bag->torques().size());
+    response.pairs = static_cast<std::uint32_t>(bag->numFrames());
+    try {
+      if (error_.empty()) writeGoal(bag.get());
+      if (error_.empty()) bag->close();
+    } catch (const std::exception& e) {
+      error_ = e.what();
+    }
+    response.success = error_.empty();
+    response.message = error_;
+    if (!response.success) ROS_ERROR_STREAM("recording: " << response.message);
+    return true;
+  }
 
   BagOptions bag_options_;
   RecorderOptions options_;
@@ -77,176 +233,6 @@ class TrialRecorder {
   ros::ServiceServer start_server_;
   ros::ServiceServer stop_server_;
 };
-
-TrialRecorder::TrialRecorder(ros::NodeHandle nh, const BagOptions& bag,
-                             const RecorderOptions& options)
-    : bag_options_(bag), options_(options), transport_(nh) {
-  // Without TCP_NODELAY, TCP holds an image back until the one before is acknowledged.
-  const auto no_delay = ros::TransportHints().tcpNoDelay();
-  goal_sub_ = nh.subscribe<sensor_msgs::Image>(topics::kGoalImage, 1,
-                                               [this](const sensor_msgs::ImageConstPtr& goal) {
-                                                 const std::lock_guard<std::mutex> lock(mutex_);
-                                                 goal_ = goal;
-                                                 changed_.notify_all();
-                                               });
-  image_sub_ = transport_.subscribe(
-      topics::kImage, kQueue, [this](const sensor_msgs::ImageConstPtr& image) { record(*image); },
-      ros::VoidPtr(), image_transport::TransportHints("raw", no_delay));
-  torque_sub_ = nh.subscribe<ddm_msgs::Torque>(
-      topics::kAppliedTorque, kQueue,
-      [this](const ddm_msgs::TorqueConstPtr& torque) { recordApplied(*torque); },
-      ros::VoidConstPtr(), no_delay);
-  start_server_ = nh.advertiseService(topics::kStartRecording, &TrialRecorder::start, this);
-  stop_server_ = nh.advertiseService(topics::kStopRecording, &TrialRecorder::stop, this);
-}
-
-template <class Message>
-void TrialRecorder::record(const Message& message) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  if (bag_ == nullptr || !error_.empty()) return;
-  if (!after_.isZero() && message.header.stamp <= after_) return;
-  try {
-    bag_->write(message);
-  } catch (const std::exception& e) {
-    error_ = e.what();
-    ROS_ERROR_STREAM("recording stopped: " << error_);
-  }
-  changed_.notify_all();
-}
-
-void TrialRecorder::recordApplied(const ddm_msgs::Torque& torque) {
-  if (!torque.torque.empty()) return record(torque);
-  const std::lock_guard<std::mutex> lock(mutex_);
-  if (bag_ == nullptr) return;
-  unanswered_.insert(torque.header.stamp);
-  changed_.notify_all();
-}
-
-/// Writes the goal image with the stamp of the first image, so that the bag does not begin earlier.
-/// The first image may precede the trial: a robot publishes images during its reset, but training
-/// uses only those from the first torque to the last. The goal image is written at the end, because
-/// it may arrive after the first images.
-void TrialRecorder::writeGoal(BagWriter* bag) const {
-  if (goal_ != nullptr && !bag->images().empty()) bag->writeGoal(*goal_, *bag->images().begin());
-}
-
-bool TrialRecorder::start(ddm_msgs::StartRecording::Request& request,
-                          ddm_msgs::StartRecording::Response& response) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  if (bag_ != nullptr && request.path.empty()) {
-    after_ = request.after;
-    response.success = true;
-    return true;
-  }
-  std::unique_ptr<BagWriter> bag;
-  try {
-    requireNew(request.path);
-    bag = std::make_unique<BagWriter>(request.path, bag_options_);
-  } catch (const std::exception& e) {
-    response.message = e.what() + std::string(bag_ == nullptr ? "" : "; the recording goes on");
-    ROS_ERROR_STREAM(response.message);
-    return true;
-  }
-  if (bag_ != nullptr) ROS_WARN("a recording was not stopped: its bag stays *.active");
-  bag_ = std::move(bag);
-  ++num_recordings_;
-  changed_.notify_all();  // wakes a stop() that still waits for the old recording
-  error_.clear();
-  after_ = request.after;
-  unanswered_.clear();
-  response.success = true;
-  return true;
-}
-
-bool TrialRecorder::hasGoal(const ddm_msgs::StopRecording::Request& request) const {
-  return request.goal.isZero() || (goal_ != nullptr && goal_->header.stamp == request.goal);
-}
-
-/// @return whether the bag has all images of the trial and a report of the torque after each of
-///         them
-bool TrialRecorder::complete(const ddm_msgs::StopRecording::Request& request) const {
-  const std::set<ros::Time>& images = bag_->images();
-  if (images.size() < request.num_steps) return false;
-  if (!hasGoal(request)) return false;
-  auto end = images.end();
-  if (!request.last.isZero()) {
-    end = images.upper_bound(request.last);
-    if (images.count(request.last) == 0) return false;
-  } else if (request.num_steps > 0) {
-    end = std::next(images.begin(), request.num_steps);
-  }
-  return std::distance(images.begin(), end) >= request.num_steps &&
-         std::all_of(images.begin(), end, [this](const ros::Time& stamp) {
-           return bag_->torques().count(stamp) + unanswered_.count(stamp) > 0;
-         });
-}
-
-/// @return why the bag does not contain the trial; empty if it does
-std::string TrialRecorder::shortcoming(const ddm_msgs::StopRecording::Request& request) const {
-  if (request.num_steps == 0) return "";
-  std::ostringstream text;
-  if (!hasGoal(request)) {
-    text << "no goal image with stamp " << request.goal << " came on " << goal_sub_.getTopic()
-         << " within recorder/timeout = " << options_.timeout << " s, ";
-    if (goal_ == nullptr) {
-      text << "nor any other";
-    } else {
-      text << "the last one has stamp " << goal_->header.stamp;
-    }
-    text << ": publish it with the stamp that reset answers";
-  } else if (!complete(request)) {
-    text << "of " << request.num_steps << " images and torques that are due, the bag holds "
-         << bag_->images().size() << " and " << bag_->torques().size() << ", and "
-         << bag_->numFrames() << " pairs of them after recorder/timeout = " << options_.timeout
-         << " s; whether a torque acted on the others was not reported: publish "
-         << torque_sub_.getTopic() << " for each image";
-  } else if (bag_->numFrames() == 0) {
-    text << "no torque acted in time: there is nothing to learn from in " << bag_->images().size()
-         << " images";
-  }
-  return text.str();
-}
-
-bool TrialRecorder::stop(ddm_msgs::StopRecording::Request& request,
-                         ddm_msgs::StopRecording::Response& response) {
-  std::unique_lock<std::mutex> lock(mutex_);
-  if (bag_ == nullptr) {
-    response.message = "nothing is being recorded: call start_recording first";
-    return true;
-  }
-  if (stopping_ == num_recordings_) {  // a second wait would block the last thread
-    response.message = "this recording is being stopped already";
-    return true;
-  }
-  // Other services run during the wait, so that another recording may replace this one.
-  const int recording = stopping_ = num_recordings_;
-  const auto replaced = [&] { return bag_ == nullptr || num_recordings_ != recording; };
-  const auto decided = [&] { return replaced() || !error_.empty() || complete(request); };
-  // Waits in slices: if the process is paused, at most one slice is lost, and messages that arrived
-  // meanwhile are still read.
-  for (double left = options_.timeout; left > 0.0; left -= kSlice.count()) {
-    if (changed_.wait_for(lock, std::min(kSlice, Seconds(left)), decided)) break;
-  }
-  if (replaced()) {
-    response.message = "another recording was started or stopped meanwhile";
-    return true;
-  }
-  if (error_.empty()) error_ = shortcoming(request);
-  const std::unique_ptr<BagWriter> bag = std::move(bag_);
-  response.images = static_cast<std::uint32_t>(bag->images().size());
-  response.torques = static_cast<std::uint32_t>(bag->torques().size());
-  response.pairs = static_cast<std::uint32_t>(bag->numFrames());
-  try {
-    if (error_.empty()) writeGoal(bag.get());
-    if (error_.empty()) bag->close();
-  } catch (const std::exception& e) {
-    error_ = e.what();
-  }
-  response.success = error_.empty();
-  response.message = error_;
-  if (!response.success) ROS_ERROR_STREAM("recording: " << response.message);
-  return true;
-}
 
 }  // namespace
 }  // namespace ddm

@@ -13,14 +13,9 @@ from ddm_model.model_data import ModelData, ModelDataError
 from ddm_model.plain_file import write_file
 from ddm_model.verdict import summary, verdict
 
-# Shorthands for keys of the block data_set, which the program read_bags reads.
-DATA_SET_OPTIONS = (
-    ("--image-topic", "TOPIC", "sensor_msgs/Image or CompressedImage, also without /compressed"),
-    ("--torque-topic", "TOPIC", "ddm_msgs/Torque, std_msgs/Float64, Float32 or arrays of them, geometry_msgs/WrenchStamped, "
-     "sensor_msgs/JointState"),
-    ("--dt", "S", "time between frames [s], but for ddm_msgs/Torque"),
-    ("--motors", "A,B,...", "joints of a JointState, or parts (torque.z) of a wrench"),
-    ("--crop", "X,Y,W,H", "what counts of the images: column, row, width, height [pixels]"))
+# Options that are passed on to the program read_bags, which explains them: name and form of the value.
+READ_BAGS_OPTIONS = {"config": "FILE", "image-topic": "TOPIC", "torque-topic": "TOPIC", "dt": "S", "motors": "A,B,...",
+                     "crop": "X,Y,W,H"}
 
 
 def say(text):
@@ -136,20 +131,15 @@ def main(arguments=None):
     parser.add_argument("--model", metavar="FILE", required=True, help="model file")
     parser.add_argument("--out", metavar="DIR", required=True, help="folder of the report; made if need be")
     parser.add_argument("--steps", type=int, default=15, help="longest prediction (%(default)s, as plans are)")
-    parser.add_argument("--config", metavar="FILE", action="append", default=[],
-                        help="YAML file whose block data_set names the topics in the bags; repeatable")
-    for option, form, what in DATA_SET_OPTIONS:
-        parser.add_argument(option, metavar=form, help="data_set/%s: %s" % (option[2:].replace("-", "_"), what))
+    for name, form in READ_BAGS_OPTIONS.items():
+        parser.add_argument("--" + name, metavar=form, action="append", default=[], help="as for read_bags")
     parser.add_argument("bags", metavar="BAG", nargs="*", help="bags with images and torques, best such that the "
                         "model has not learned from. Images are brought to the model's size")
     options = parser.parse_args(arguments)
     if not 1 <= options.steps <= 1000:
         parser.error("--steps must lie in [1, 1000], got %d" % options.steps)
-    bag_options = [word for file in options.config for word in ("--config", file)]
-    for option, _, _ in DATA_SET_OPTIONS:
-        value = getattr(options, option[2:].replace("-", "_"))
-        if value is not None:
-            bag_options.append("%s=%s" % (option, value))
+    bag_options = ["--%s=%s" % (name, value) for name in READ_BAGS_OPTIONS
+                   for value in getattr(options, name.replace("-", "_"))]
     try:
         checks = inspect(options.model, options.bags, options.out, options.steps, bag_options)
     except (ModelDataError, OSError) as error:
