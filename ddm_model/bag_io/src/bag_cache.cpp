@@ -2,23 +2,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_bag_io/bag_cache.h"
 
-#include <sys/stat.h>
-
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
+#include <filesystem>
 #include <stdexcept>
+#include <system_error>
 
 namespace ddm {
 
 const BagContent& BagCache::contentOf(const std::string& path) {
-  struct stat status {};
-  if (::stat(path.c_str(), &status) != 0) {
-    throw std::runtime_error("bag " + path + ": " + std::strerror(errno));
-  }
-  const std::int64_t modified =
-      std::int64_t{status.st_mtim.tv_sec} * 1000000000 + status.st_mtim.tv_nsec;
-  const auto bytes = static_cast<std::uintmax_t>(status.st_size);
+  std::error_code missing;  // readBag() says more about a missing file
+  const auto modified = std::filesystem::last_write_time(path, missing);
+  const std::uintmax_t bytes = std::filesystem::file_size(path, missing);
   const auto known = entries_.find(path);
   if (known != entries_.end() && known->second.modified == modified &&
       known->second.bytes == bytes) {

@@ -17,8 +17,6 @@
 #include <fstream>
 #include <functional>
 #include <map>
-#include <optional>
-#include <string_view>
 #include <utility>
 
 #include "bag_file.h"
@@ -38,19 +36,6 @@ std::string listOf(const std::vector<int>& numbers) {
 
 constexpr int kFewGreyValues = 64;  // of 256; a 14 bit image in a 16 bit message has so few
 
-/// Reads the times of an image, and hashes its content without the header.
-BagImage bagImageOf(const BagMessage& message, std::size_t number) {
-  MessageBytes bytes(message.bytes.data(), message.bytes.size());
-  std_msgs::Header header;
-  try {
-    bytes.next(header);
-  } catch (const std::exception& e) {
-    refuseMessage(message, e);
-  }
-  const std::string_view content = message.bytes.substr(message.bytes.size() - bytes.left());
-  return {header.stamp, message.recorded, number, std::hash<std::string_view>()(content)};
-}
-
 /// Parses a raw or compressed image.
 /// @param encoding  out: encoding or format as the camera sent it
 /// @throws std::invalid_argument if a compressed image cannot be decoded
@@ -65,187 +50,128 @@ sensor_msgs::Image imageOf(const BagMessage& message, std::string* encoding) {
   return unpacked(compressed);
 }
 
-/// Reads the times of all images and torques, and pairs them. Pixels are not decoded, since many
-/// images of a fast camera belong to no sample.
-Pairs readPairs(BagFile* bag, const BagTopics& topics, const BagOptions& options) {
-  TorqueReader reader(options.motors);
-  Publishers controllers, cameras;
-  std::vector<BagImage> images;
-  std::vector<BagTorque> torques;
-  bag->forEachMessage({topics.images.name, topics.torques.name}, [&](const BagMessage& message) {
-    if (message.connection.topic == topics.images.name) {
-      cameras.add(message.connection.publisher, message.recorded);
-      images.push_back(bagImageOf(message, images.size()));
-    } else if (const std::optional<BagTorque> torque = reader.read(message)) {
-      controllers.add(message.connection.publisher, message.recorded);
-      torques.push_back(*torque);
+/// The decoded images of a bag.
+struct BagImages {
+  std::vector<Grey> greys;          ///< of the samples; empty: the image cannot be decoded
+  Grey goal;                        ///< empty: there is no goal image
+  std::string camera;               ///< see BagContent
+  std::vector<std::string> faults;  ///< of the images that cannot be decoded
+};
+
+/// Decodes the images of the samples, and the goal image.
+/// @throws std::runtime_error if the camera changes, or if the goal image cannot be decoded
+BagImages decodeImages(BagFile* bag, const BagTopics& topics, const Pairs& pairs, int image_size,
+                       const BagOptions& options) {
+  BagImages out;
+  out.greys.resize(pairs.frames.size());
+  std::map<std::size_t, std::size_t> frame_of;  // index of the sample, by number of the image
+  for (std::size_t i = 0; i < pairs.frames.size(); ++i) frame_of[pairs.frames[i].image] = i;
+  std::size_t number = 0;  // of the next image in the order of the file
+  bag->forEachMessage({topics.images.name, topics.goal.name}, [&](const BagMessage& message) {
+    std::string encoding;
+    if (message.connection.topic == topics.goal.name) {
+      try {
+        out.goal = greyOf(imageOf(message, &encoding), image_size, options);
+      } catch (const std::exception& e) {
+        refuseBag("goal image on ", topics.goal.name, ": ", e.what());
+      }
+      return;
     }
-  });
-  const std::string& topic = topics.torques.name;
-  const std::string unknown = reader.withoutEffort();
-  if (torques.empty()) {
-    const std::string motors = boost::algorithm::join(options.motors, " and ");
-    refuseBag("topic ", topic, " has no torque", motors.empty() ? "" : " of " + motors,
-              unknown.empty() ? "" : " (" + unknown + " have no effort or number of them)",
-              ": leave this bag out, or set data_set/torque_topic and motors");
-  }
-  std::vector<std::string> notes;
-  if (!unknown.empty()) {
-    notes.push_back("topic " + topic + ": " + unknown +
-                    " have no effort or number of the motors and do not count");
-  }
-  notes.push_back(controllers.requireOneAtATime("topic " + topic + " has torques of ",
-                                                "record the one that moves the motor"));
-  notes.push_back(cameras.requireOneAtATime("topic " + topics.images.name + " has images of ",
-                                            "record each camera on a topic of its own"));
-  notes.erase(std::remove(notes.begin(), notes.end(), ""), notes.end());
-  const bool by_stamp = TorqueReader::answersImages(topics.torques.type);
-  Pairs pairs = pairUp(std::move(images), std::move(torques), by_stamp ? 0.0 : options.dt);
-  pairs.notes.insert(pairs.notes.begin(), notes.begin(), notes.end());
-  return pairs;
-}
-
-/// Collects the images of the samples of a bag, and its goal image.
-class FrameImages {
- public:
-  FrameImages(Pairs pairs, int image_size, const BagOptions& options)
-      : pairs_(std::move(pairs)),
-        image_size_(image_size),
-        options_(options),
-        greys_(pairs_.frames.size()) {
-    for (std::size_t i = 0; i < greys_.size(); ++i) frame_of_[pairs_.frames[i].image] = i;
-  }
-
-  /// Adds the next image in the order of the file. An image that cannot be decoded leaves a gap.
-  void add(const BagMessage& message) {
-    const auto found = frame_of_.find(number_++);
-    if (found == frame_of_.end()) return;
-    const std::string time = timeText(pairs_.frames[found->second].time);
+    const auto frame = frame_of.find(number++);
+    if (frame == frame_of.end()) return;
+    const std::string time = timeText(pairs.frames[frame->second].time);
     try {
-      std::string encoding;
       const sensor_msgs::Image image = imageOf(message, &encoding);
       if (image.data.empty()) throw std::invalid_argument("it has no pixels");
-      requireSameCamera(image, encoding, time);
-      greys_[found->second] = greyOf(image, image_size_, options_);
+      const std::string size = textOf(image.width, "x", image.height, " ");
+      if (out.camera.empty()) out.camera = size + encoding;
+      // The format of a compressed image may change without a change of its pixels.
+      if (isRaw(message.connection) ? out.camera != size + encoding
+                                    : !boost::algorithm::starts_with(out.camera, size)) {
+        refuseBag("the images change from ", out.camera, " to ", size, encoding, " at ", time,
+                  ": record one camera setting per bag");
+      }
+      out.greys[frame->second] = greyOf(image, image_size, options);
     } catch (const std::invalid_argument& e) {
-      if (num_broken_++ == 0) first_broken_ = "image at " + time + ": " + e.what();
+      out.faults.push_back("image at " + time + ": " + e.what());
     }
-  }
+  });
+  return out;
+}
 
-  void setGoal(const BagMessage& message) {
-    try {
-      std::string encoding;
-      goal_ = greyOf(imageOf(message, &encoding), image_size_, options_);
-    } catch (const std::exception& e) {
-      refuseBag("goal image on ", message.connection.topic, ": ", e.what());
-    }
-  }
+/// @return hash of time, image and torque of a sample
+std::size_t idOf(const Grey& grey, const Pairs::Frame& frame) {
+  std::string bytes(grey.begin(), grey.end());
+  bytes.append(reinterpret_cast<const char*>(frame.torque.data()),
+               frame.torque.size() * sizeof(double));
+  return std::hash<std::string>()(bytes + timeText(frame.time));
+}
 
-  /// @return all samples, with notes to the user
-  /// @throws std::runtime_error if more images are broken than whole
-  BagContent content() const {
-    if (2 * num_broken_ > greys_.size()) refuseBag(first_broken_);
-    const auto torque_dim = static_cast<Eigen::Index>(pairs_.frames.front().torque.size());
-    BagContent content{DataSet(image_size_, static_cast<int>(torque_dim)), camera_};
-    std::vector<ros::Time> times;
-    bool new_segment = false;
-    int darkest = 255, brightest = 0;
-    for (std::size_t i = 0; i < greys_.size(); ++i) {
-      const Pairs::Frame& frame = pairs_.frames[i];
-      const Grey& grey = greys_[i];
-      new_segment = new_segment || frame.new_segment || grey.empty();
-      if (grey.empty()) continue;
-      const auto range = std::minmax_element(grey.begin(), grey.end());
-      darkest = std::min<int>(darkest, *range.first);
-      brightest = std::max<int>(brightest, *range.second);
-      times.push_back(frame.time);
-      if (pairs_.of_others) content.frame_ids.push_back(idOf(grey, frame));
-      content.data.append(grey, Eigen::Map<const Eigen::VectorXd>(frame.torque.data(), torque_dim),
-                          new_segment);
-      new_segment = false;
-    }
-    const auto since = [&times](const ros::Time& time) {
-      return secondsBetween(times.front(), time);
-    };
-    for (const ros::Time& time : times) content.times.push_back(since(time));
-    content.interval = medianInterval(times);
-    for (const ros::Time& time : pairs_.images_without_torque) {
-      content.images_without_torque.push_back(since(time));
-    }
-    for (const ros::Time& time : pairs_.torques_without_image) {
-      content.torques_without_image.push_back(since(time) - pairs_.lag);
-    }
-    if (!goal_.empty()) content.data.setGoal(goal_);
-    content.notes = pairs_.notes;
-    if (pairs_.of_others && content.data.torques().isZero(0.0)) {
-      content.notes.emplace_back("all its torques are 0: record what commands the motors");
-    }
-    if (num_broken_ > 0) {
-      addNote(&content.notes, num_broken_,
-              " image(s) cannot be read and leave a gap, the first: ", first_broken_);
-    }
-    if (brightest - darkest < kFewGreyValues) {
-      addNote(&content.notes, "its images (", camera_, ") have grey values from ", darkest, " to ",
-              brightest,
-              " of 255, so that little can be told apart: scale 10 or 12 "
-              "bits, or a depth, to the whole range before they are "
-              "recorded");
-    }
-    return content;
+/// @return all samples, with notes to the user
+/// @throws std::runtime_error if more images are broken than whole
+BagContent contentOf(const Pairs& pairs, const BagImages& images, int image_size) {
+  if (2 * images.faults.size() > images.greys.size()) refuseBag(images.faults.front());
+  const auto torque_dim = static_cast<Eigen::Index>(pairs.frames.front().torque.size());
+  BagContent content{DataSet(image_size, static_cast<int>(torque_dim)), images.camera};
+  std::vector<ros::Time> times;
+  bool new_segment = false;
+  int darkest = 255, brightest = 0;
+  for (std::size_t i = 0; i < images.greys.size(); ++i) {
+    const Pairs::Frame& frame = pairs.frames[i];
+    const Grey& grey = images.greys[i];
+    new_segment = new_segment || frame.new_segment || grey.empty();
+    if (grey.empty()) continue;
+    const auto range = std::minmax_element(grey.begin(), grey.end());
+    darkest = std::min<int>(darkest, *range.first);
+    brightest = std::max<int>(brightest, *range.second);
+    times.push_back(frame.time);
+    if (pairs.of_others) content.frame_ids.push_back(idOf(grey, frame));
+    content.data.append(grey, Eigen::Map<const Eigen::VectorXd>(frame.torque.data(), torque_dim),
+                        new_segment);
+    new_segment = false;
   }
-
- private:
-  void requireSameCamera(const sensor_msgs::Image& image, const std::string& encoding,
-                         const std::string& time) {
-    const std::string size = textOf(image.width, "x", image.height, " ");
-    if (camera_.empty()) camera_ = size + encoding;
-    // The format of a compressed image may change without a change of its pixels.
-    const bool compressed = encoding != image.encoding;
-    if (camera_ == size + encoding) return;
-    if (compressed && boost::algorithm::starts_with(camera_, size)) return;
-    refuseBag("the images change from ", camera_, " to ", size, encoding, " at ", time,
-              ": record one camera setting per bag");
+  if (!images.goal.empty()) content.data.setGoal(images.goal);
+  const auto sinceFirst = [&times](const std::vector<ros::Time>& all, double lag) {
+    std::vector<double> seconds;
+    for (const ros::Time& time : all) seconds.push_back(secondsBetween(times.front(), time) - lag);
+    return seconds;
+  };
+  content.times = sinceFirst(times, 0.0);
+  content.interval = medianInterval(times);
+  content.images_without_torque = sinceFirst(pairs.images_without_torque, 0.0);
+  content.torques_without_image = sinceFirst(pairs.torques_without_image, pairs.lag);
+  content.notes = pairs.notes;
+  if (pairs.of_others && content.data.torques().isZero(0.0)) {
+    content.notes.emplace_back("all its torques are 0: record what commands the motors");
   }
-
-  /// @return hash of time, image and torque of a sample
-  static std::size_t idOf(const Grey& grey, const Pairs::Frame& frame) {
-    std::string bytes(grey.begin(), grey.end());
-    bytes.append(reinterpret_cast<const char*>(frame.torque.data()),
-                 frame.torque.size() * sizeof(double));
-    return std::hash<std::string>()(bytes + timeText(frame.time));
+  if (!images.faults.empty()) {
+    content.notes.push_back(
+        textOf(images.faults.size(),
+               " image(s) cannot be read and leave a gap, the first: ", images.faults.front()));
   }
-
-  Pairs pairs_;
-  int image_size_;
-  const BagOptions& options_;
-  std::map<std::size_t, std::size_t> frame_of_;  // index of the sample, by number of the image
-  std::vector<Grey> greys_;                      // of the samples; empty until the image is decoded
-  std::size_t number_ = 0;                       // number of the next image
-  std::size_t num_broken_ = 0;
-  std::string first_broken_;
-  Grey goal_;
-  std::string camera_;
-};
+  if (brightest - darkest < kFewGreyValues) {
+    content.notes.push_back(textOf(
+        "its images (", images.camera, ") have grey values from ", darkest, " to ", brightest,
+        " of 255, so that little can be told apart: scale 10 or 12 bits, or a depth, to the "
+        "whole range before they are recorded"));
+  }
+  return content;
+}
 
 }  // namespace
 
 std::vector<std::string> BagOptions::problems() const {
   OptionChecks data_set("data_set");
-  const auto requireTopicName = [&data_set](const std::string& key, const std::string& topic) {
+  const std::map<std::string, std::string> names = {
+      {"image_topic", image_topic}, {"torque_topic", torque_topic}, {"goal_topic", goal_topic}};
+  for (const auto& [key, topic] : names) {
     data_set.require(!topic.empty() && topic.back() != '/', key, "be the name of a topic",
                      "'" + topic + "'");
-  };
-  requireTopicName("image_topic", image_topic);
-  requireTopicName("torque_topic", torque_topic);
-  requireTopicName("goal_topic", goal_topic);
-  const auto requireOther = [&data_set](const std::string& key, const std::string& topic,
-                                        const std::string& other_key, const std::string& other) {
-    data_set.require(absolute(topic) != absolute(other), key,
-                     "be another topic than data_set/" + other_key, "'" + topic + "' for both");
-  };
-  requireOther("goal_topic", goal_topic, "image_topic", image_topic);
-  requireOther("torque_topic", torque_topic, "image_topic", image_topic);
-  requireOther("torque_topic", torque_topic, "goal_topic", goal_topic);
+    for (const auto& [other_key, other] : names) {
+      data_set.require(key <= other_key || absolute(topic) != absolute(other), key,
+                       "be another topic than data_set/" + other_key, "'" + topic + "' for both");
+    }
+  }
   data_set.requireNotNegative("dt", dt);
   data_set.require(std::none_of(motors.begin(), motors.end(),
                                 [](const std::string& motor) { return motor.empty(); }),
@@ -267,15 +193,8 @@ Grey greyOf(const sensor_msgs::Image& image, int image_size, const BagOptions& o
 BagContent readBagBytes(std::istream* in, int image_size, const BagOptions& options) {
   BagFile bag(in);
   const BagTopics topics = findTopics(bag, options);
-  FrameImages images(readPairs(&bag, topics, options), image_size, options);
-  bag.forEachMessage({topics.images.name, topics.goal.name}, [&](const BagMessage& message) {
-    if (message.connection.topic == topics.goal.name) {
-      images.setGoal(message);
-    } else {
-      images.add(message);
-    }
-  });
-  return images.content();
+  const Pairs pairs = readPairs(&bag, topics, options);
+  return contentOf(pairs, decodeImages(&bag, topics, pairs, image_size, options), image_size);
 }
 
 BagContent readBag(const std::string& path, int image_size, const BagOptions& options) {

@@ -9,7 +9,6 @@
 #include <cstdio>
 #include <stdexcept>
 #include <string>
-#include <vector>
 
 namespace ddm {
 
@@ -27,12 +26,6 @@ inline std::string secondsText(double seconds) {
 template <class... Parts>
 [[noreturn]] void refuseBag(const Parts&... parts) {
   throw std::runtime_error(textOf(parts...));
-}
-
-/// Adds a message to the user, composed of its parts.
-template <class... Parts>
-void addNote(std::vector<std::string>* notes, const Parts&... parts) {
-  notes->push_back(textOf(parts...));
 }
 
 }  // namespace ddm

@@ -1,4 +1,4 @@
-// Topics of a bag: selects them, reads their torques and checks their publishers.
+// Topics of a bag: selects them, reads their torques, and pairs these with the images.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bag_topics.h"
 
@@ -15,7 +15,12 @@
 #include <boost/algorithm/string/predicate.hpp>
 #include <cmath>
 #include <functional>
+#include <map>
+#include <optional>
 #include <set>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "bag_texts.h"
 
@@ -103,25 +108,6 @@ std::string parentOf(const std::string& topic) {
   return absolute(topic.substr(0, topic.rfind('/')));
 }
 
-/// Refuses a topic that was found but cannot be read.
-/// @param base   name without the transport
-/// @param key    option that names the topic
-[[noreturn]] void refuseType(const Topic& topic, std::string base, const Names& types,
-                             const std::string& key) {
-  if (absolute(topic.name) == base) {
-    if (!ends_with(base, "/theora") && !ends_with(base, "/compressedDepth")) {
-      refuseBag("topic ", topic.name, " has type ", topic.type, ", it must be ",
-                boost::algorithm::join(types, " or "), ": set data_set/", key);
-    }
-    base = parentOf(topic.name);
-  }
-  const std::string transport = topic.name.substr(topic.name.rfind('/') + 1);
-  refuseBag("topic ", topic.name, " has images of the transport ", transport, " (", topic.type,
-            "), which cannot be read: record ", base, " or ", base,
-            "/compressed, or play the bag with `rosrun image_transport republish ", transport,
-            " in:=", base, " raw out:=/image_raw` and record that");
-}
-
 /// @param key  option that gives the name
 /// @return     topic with an empty name if there is none
 Topic findTopic(const BagFile& bag, const std::string& name, const Names& types,
@@ -155,7 +141,12 @@ Topic findTopic(const BagFile& bag, const std::string& name, const Names& types,
     const bool known = absolute(topic) == base || ends_with(topic, "/compressed");
     if (known && std::find(types.begin(), types.end(), type) != types.end()) return {topic, type};
   }
-  refuseType({topics.begin()->first, topics.begin()->second}, base, types, key);
+  refuseBag("topic ", topics.begin()->first, " has type ", topics.begin()->second, ", it must be ",
+            boost::algorithm::join(types, " or "),
+            &types == &kImages ? " of the transport raw or compressed: record that, convert the "
+                                 "images with `rosrun image_transport republish`"
+                               : ": record that",
+            ", or set data_set/", key);
 }
 
 Topic requireTopic(const BagFile& bag, const std::string& name, const Names& types,
@@ -171,6 +162,142 @@ Topic requireTopic(const BagFile& bag, const std::string& name, const Names& typ
             "): record it, or set data_set/", key);
 }
 
+/// Whether messages of this type have the stamp of the image that they answer.
+bool answersImages(const std::string& type) { return type == "ddm_msgs/Torque"; }
+
+/// Reads the torques of one bag.
+class TorqueReader {
+ public:
+  /// @param motors  see BagOptions
+  explicit TorqueReader(Names motors) : motors_(std::move(motors)) {}
+
+  /// @return the torque; empty for a message about other joints, without efforts, or about a time
+  ///         in which no single torque acted
+  /// @throws std::runtime_error with the time, the fault and the remedy. Faults: a torque is not
+  ///         finite; the number of motors changes; motors are not in the message
+  std::optional<BagTorque> read(const BagMessage& message) {
+    const auto& [topic, type, md5sum, publisher] = message.connection;
+    const Values all = kReaders.at(type)(message);
+    if (!motors_.empty() && type.rfind("std_msgs/", 0) == 0) {
+      refuseBag("topic ", topic, " has type ", type,
+                ", whose numbers have no names: leave data_set/motors empty");
+    }
+    if (type == kWrench && !anyIn(all.names, motors_)) {
+      refuseBag("topic ", topic, " has forces and torques along ", listOf(all.names),
+                ": set data_set/motors to those of the motors");
+    }
+    BagTorque out{all.stamp, message.recorded, all.values};
+    if (type == kJoints) {
+      if (!motors_.empty() && !anyIn(all.names, motors_)) return std::nullopt;
+      if (names_.empty() && !all.values.empty()) names_ = all.names;
+      if (motors_.empty() && !all.values.empty() && all.names != names_) {
+        refuseBag("the joints of topic ", topic, " change from ", listOf(names_), " to ",
+                  listOf(all.names), ": set data_set/motors to those of the motors");
+      }
+      if (!all.values.empty() && all.values.size() != all.names.size()) {
+        refuseBag("topic ", topic, " has ", all.values.size(), " effort(s) for ", all.names.size(),
+                  " joint(s): record what commands the motors");
+      }
+    }
+    const bool by_name = !motors_.empty() && !all.names.empty() && !all.values.empty();
+    if (by_name) out.torque = valuesOf(motors_, all, topic);
+    // Drivers omit an unknown effort in a JointState, or set it to NaN. applied_torque has no number
+    // if no single torque acted.
+    const bool is_unknown = std::all_of(out.torque.begin(), out.torque.end(),
+                                        [](double value) { return std::isnan(value); });
+    if (out.torque.empty() || (type == kJoints && is_unknown)) {
+      if (!answersImages(type)) ++without_effort_[publisher];
+      return std::nullopt;
+    }
+    const std::string time = timeText(out.stamp.isZero() ? out.recorded : out.stamp);
+    for (const double value : out.torque) {
+      if (std::isfinite(value)) continue;
+      refuseBag("the torque at ", time, " must be finite, got ", value,
+                ": leave this bag out, or mend what commands the motor");
+    }
+    if (dim_ == 0) dim_ = out.torque.size();
+    if (out.torque.size() != dim_) {
+      refuseBag("the torque of topic ", topic, " at ", time, " has ", out.torque.size(),
+                " value(s) where ", dim_,
+                " are due: give each robot a topic, or leave this bag out");
+    }
+    return out;
+  }
+
+  /// @return publishers of messages without efforts, as "12 messages of /driver"; empty: none
+  std::string withoutEffort() const {
+    Names texts;
+    for (const auto& entry : without_effort_) {
+      texts.push_back(textOf(entry.second, " messages of ",
+                             entry.first.empty() ? "an unnamed node" : entry.first));
+    }
+    return boost::algorithm::join(texts, " and ");
+  }
+
+ private:
+  Names motors_;
+  Names names_;                                        // joints of the first message
+  std::size_t dim_ = 0;                                // number of motors; 0: no torque yet
+  std::map<std::string, std::size_t> without_effort_;  // number of messages, by publisher
+};
+
+/// Publishers of a topic, and the times at which they published.
+class Publishers {
+ public:
+  void add(const std::string& name, const ros::Time& time) {
+    Span& span = spans_.try_emplace(name, Span{time, time}).first->second;
+    span.first = std::min(span.first, time);
+    span.last = std::max(span.last, time);
+    ++span.number;
+  }
+
+  /// Checks that no two publishers published at the same time. Ignores publishers without a name,
+  /// which rosbag omits in some latched messages.
+  /// @param what    beginning of the message, before the publishers
+  /// @param remedy  remedy for two publishers at the same time
+  /// @return        note to the user if several published, one after the other; otherwise empty
+  /// @throws std::runtime_error if two published at the same time
+  std::string requireOneAtATime(const std::string& what, const std::string& remedy) const {
+    std::vector<std::pair<std::string, Span>> named;
+    for (const auto& entry : spans_) {
+      if (!entry.first.empty()) named.push_back(entry);
+    }
+    std::sort(named.begin(), named.end(),
+              [](const auto& a, const auto& b) { return a.second.first < b.second.first; });
+    bool overlap = false;
+    std::vector<std::string> texts;
+    for (std::size_t i = 0; i < named.size(); ++i) {
+      const Span& span = named[i].second;
+      texts.push_back(textOf(named[i].first, " (", span.number, " from ", timeText(span.first),
+                             " to ", timeText(span.last), ")"));
+      overlap = overlap || (i > 0 && span.first <= named[i - 1].second.last);
+    }
+    const std::string text = what + boost::algorithm::join(texts, " and ");
+    if (overlap) refuseBag(text, ": ", remedy);
+    return named.size() > 1 ? text + ", one after the other: all of them count" : "";
+  }
+
+ private:
+  struct Span {
+    ros::Time first, last;
+    std::size_t number = 0;
+  };
+  std::map<std::string, Span> spans_;
+};
+
+/// Reads the times of an image, and hashes its content without the header.
+BagImage bagImageOf(const BagMessage& message, std::size_t number) {
+  MessageBytes bytes(message.bytes.data(), message.bytes.size());
+  std_msgs::Header header;
+  try {
+    bytes.next(header);
+  } catch (const std::exception& e) {
+    refuseMessage(message, e);
+  }
+  const std::string_view content = message.bytes.substr(message.bytes.size() - bytes.left());
+  return {header.stamp, message.recorded, number, std::hash<std::string_view>()(content)};
+}
+
 }  // namespace
 
 std::string absolute(const std::string& topic) {
@@ -179,10 +306,12 @@ std::string absolute(const std::string& topic) {
 
 BagTopics findTopics(const BagFile& bag, const BagOptions& options) {
   BagTopics topics;
+  Names types;
+  for (const auto& reader : kReaders) types.push_back(reader.first);
   topics.images = requireTopic(bag, options.image_topic, kImages, "image_topic");
-  topics.torques = requireTopic(bag, options.torque_topic, TorqueReader::types(), "torque_topic");
+  topics.torques = requireTopic(bag, options.torque_topic, types, "torque_topic");
   topics.goal = findTopic(bag, options.goal_topic, kImages, "goal_topic");
-  if (!TorqueReader::answersImages(topics.torques.type) && options.dt == 0.0) {
+  if (!answersImages(topics.torques.type) && options.dt == 0.0) {
     refuseBag(
         "topic ", topics.torques.name, " has type ", topics.torques.type,
         ", which does not say which image it answers: set data_set/dt, the time between frames "
@@ -199,95 +328,42 @@ BagTopics findTopics(const BagFile& bag, const BagOptions& options) {
 
 bool isRaw(const BagConnection& connection) { return connection.type == kImages.front(); }
 
-std::vector<std::string> TorqueReader::types() {
-  std::vector<std::string> types;
-  for (const auto& reader : kReaders) types.push_back(reader.first);
-  return types;
-}
-
-std::optional<BagTorque> TorqueReader::read(const BagMessage& message) {
-  const auto& [topic, type, md5sum, publisher] = message.connection;
-  const Values all = kReaders.at(type)(message);
-  if (!motors_.empty() && type.rfind("std_msgs/", 0) == 0) {
-    refuseBag("topic ", topic, " has type ", type,
-              ", whose numbers have no names: leave data_set/motors empty");
-  }
-  if (type == kWrench && !anyIn(all.names, motors_)) {
-    refuseBag("topic ", topic, " has forces and torques along ", listOf(all.names),
-              ": set data_set/motors to those of the motors");
-  }
-  BagTorque out{all.stamp, message.recorded, all.values};
-  if (type == kJoints) {
-    if (!motors_.empty() && !anyIn(all.names, motors_)) return std::nullopt;
-    if (names_.empty() && !all.values.empty()) names_ = all.names;
-    if (motors_.empty() && !all.values.empty() && all.names != names_) {
-      refuseBag("the joints of topic ", topic, " change from ", listOf(names_), " to ",
-                listOf(all.names), ": set data_set/motors to those of the motors");
+Pairs readPairs(BagFile* bag, const BagTopics& topics, const BagOptions& options) {
+  TorqueReader reader(options.motors);
+  Publishers controllers, cameras;
+  std::vector<BagImage> images;
+  std::vector<BagTorque> torques;
+  bag->forEachMessage({topics.images.name, topics.torques.name}, [&](const BagMessage& message) {
+    if (message.connection.topic == topics.images.name) {
+      cameras.add(message.connection.publisher, message.recorded);
+      images.push_back(bagImageOf(message, images.size()));
+    } else if (const std::optional<BagTorque> torque = reader.read(message)) {
+      controllers.add(message.connection.publisher, message.recorded);
+      torques.push_back(*torque);
     }
-    if (!all.values.empty() && all.values.size() != all.names.size()) {
-      refuseBag("topic ", topic, " has ", all.values.size(), " effort(s) for ", all.names.size(),
-                " joint(s): record what commands the motors");
-    }
+  });
+  const std::string& topic = topics.torques.name;
+  const std::string unknown = reader.withoutEffort();
+  if (torques.empty()) {
+    const std::string motors = boost::algorithm::join(options.motors, " and ");
+    refuseBag("topic ", topic, " has no torque", motors.empty() ? "" : " of " + motors,
+              unknown.empty() ? "" : " (" + unknown + " have no effort or number of them)",
+              ": leave this bag out, or set data_set/torque_topic and motors");
   }
-  const bool by_name = !motors_.empty() && !all.names.empty() && !all.values.empty();
-  if (by_name) out.torque = valuesOf(motors_, all, topic);
-  // Drivers omit an unknown effort in a JointState, or set it to NaN. applied_torque has no number
-  // if no single torque acted.
-  const bool is_unknown = std::all_of(out.torque.begin(), out.torque.end(),
-                                      [](double value) { return std::isnan(value); });
-  if (out.torque.empty() || (type == kJoints && is_unknown)) {
-    if (!answersImages(type)) ++without_effort_[publisher];
-    return std::nullopt;
+  std::vector<std::string> notes;
+  if (!unknown.empty()) {
+    notes.push_back("topic " + topic + ": " + unknown +
+                    " have no effort or number of the motors and do not count");
   }
-  const std::string time = timeText(out.stamp.isZero() ? out.recorded : out.stamp);
-  for (const double value : out.torque) {
-    if (std::isfinite(value)) continue;
-    refuseBag("the torque at ", time, " must be finite, got ", value,
-              ": leave this bag out, or mend what commands the motor");
-  }
-  if (dim_ == 0) dim_ = out.torque.size();
-  if (out.torque.size() != dim_) {
-    refuseBag("the torque of topic ", topic, " at ", time, " has ", out.torque.size(),
-              " value(s) where ", dim_, " are due: give each robot a topic, or leave this bag out");
-  }
-  return out;
-}
-
-std::string TorqueReader::withoutEffort() const {
-  Names texts;
-  for (const auto& entry : without_effort_) {
-    texts.push_back(textOf(entry.second, " messages of ",
-                           entry.first.empty() ? "an unnamed node" : entry.first));
-  }
-  return boost::algorithm::join(texts, " and ");
-}
-
-void Publishers::add(const std::string& name, const ros::Time& time) {
-  Span& span = spans_.try_emplace(name, Span{time, time}).first->second;
-  span.first = std::min(span.first, time);
-  span.last = std::max(span.last, time);
-  ++span.number;
-}
-
-std::string Publishers::requireOneAtATime(const std::string& what,
-                                          const std::string& remedy) const {
-  std::vector<std::pair<std::string, Span>> named;
-  for (const auto& entry : spans_) {
-    if (!entry.first.empty()) named.push_back(entry);
-  }
-  std::sort(named.begin(), named.end(),
-            [](const auto& a, const auto& b) { return a.second.first < b.second.first; });
-  bool overlap = false;
-  std::vector<std::string> texts;
-  for (std::size_t i = 0; i < named.size(); ++i) {
-    const Span& span = named[i].second;
-    texts.push_back(textOf(named[i].first, " (", span.number, " from ", timeText(span.first),
-                           " to ", timeText(span.last), ")"));
-    overlap = overlap || (i > 0 && span.first <= named[i - 1].second.last);
-  }
-  const std::string text = what + boost::algorithm::join(texts, " and ");
-  if (overlap) refuseBag(text, ": ", remedy);
-  return named.size() > 1 ? text + ", one after the other: all of them count" : "";
+  notes.push_back(controllers.requireOneAtATime("topic " + topic + " has torques of ",
+                                                "record the one that moves the motor"));
+  notes.push_back(cameras.requireOneAtATime("topic " + topics.images.name + " has images of ",
+                                            "record each camera on a topic of its own"));
+  notes.erase(std::remove(notes.begin(), notes.end(), ""), notes.end());
+  const bool by_stamp = answersImages(topics.torques.type);
+  Pairs pairs = pairUp(std::move(images), std::move(torques), by_stamp ? 0.0 : options.dt);
+  pairs.notes.insert(pairs.notes.begin(), notes.begin(), notes.end());
+  return pairs;
 }
 
 }  // namespace ddm

@@ -163,8 +163,9 @@ Pairs pairByClocks(std::vector<BagImage> images, std::vector<BagTorque> torques,
                     " theirs: stamps count, so let both be stamped by one clock");
   } else if (!image_fault && !by_stamps && lags) {
     const long frames = std::lround(image_lag / dt);
-    addNote(&notes, "images were recorded ", lagText(image_lag),
-            " their stamps, and the torques have no stamps that can be trusted", kRecordingTimes);
+    notes.push_back(textOf("images were recorded ", lagText(image_lag),
+                           " their stamps, and the torques have no stamps that can be trusted",
+                           kRecordingTimes));
     if (frames >= 1 && frames <= kMaxDelay) {
       notes.back() += textOf(
           "; if it is not the recorder that was late but the camera, raise training/max_delay to ",
@@ -200,10 +201,10 @@ Pairs pairUp(std::vector<BagImage> images, std::vector<BagTorque> torques, doubl
     const std::size_t images_alone = pairs.images_without_torque.size();
     const std::size_t torques_alone = pairs.torques_without_image.size();
     if (of_others && images_alone + torques_alone > 0) {
-      addNote(&pairs.notes, images_alone, " of ", images.size(),
-              " images have no torque with their stamp and ", torques_alone, " of ",
-              pairs.frames.size() + torques_alone,
-              " torques no image: they are dropped; stamp each torque with the image it answers");
+      pairs.notes.push_back(textOf(
+          images_alone, " of ", images.size(), " images have no torque with their stamp and ",
+          torques_alone, " of ", pairs.frames.size() + torques_alone,
+          " torques no image: they are dropped; stamp each torque with the image it answers"));
     }
   }
   if (pairs.frames.empty()) {
@@ -217,9 +218,10 @@ Pairs pairUp(std::vector<BagImage> images, std::vector<BagTorque> torques, doubl
     if (pairs.frames[i].new_segment) begins.push_back(i);
   }
   if (of_others && !begins.empty()) {
-    addNote(&pairs.notes, "frames are missing at ", begins.size(), " place(s), the first after ",
-            timeText(pairs.frames[begins.front() - 1].time), ", so that it is split into ",
-            begins.size() + 1, " segments");
+    pairs.notes.push_back(textOf("frames are missing at ", begins.size(),
+                                 " place(s), the first after ",
+                                 timeText(pairs.frames[begins.front() - 1].time),
+                                 ", so that it is split into ", begins.size() + 1, " segments"));
   }
   return pairs;
 }

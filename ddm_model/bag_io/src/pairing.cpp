@@ -175,9 +175,10 @@ Pairs pairInTime(const std::vector<BagImage>& images, std::vector<BagTorque> tor
                "acted then"));
   }
   if (num_held > 0) {
-    addNote(&pairs.notes, num_held, " of ", pairs.frames.size(),
-            " frames have a torque that is older than ", secondsText(usual_age), ", at most ",
-            secondsText(longest_held), ": a torque counts until the next one");
+    pairs.notes.push_back(textOf(num_held, " of ", pairs.frames.size(),
+                                 " frames have a torque that is older than ",
+                                 secondsText(usual_age), ", at most ", secondsText(longest_held),
+                                 ": a torque counts until the next one"));
   }
   return pairs;
 }

@@ -5,6 +5,7 @@
 #include <ddm_model/data_set.h>
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <stdexcept>
@@ -41,7 +42,7 @@ class BagCache {
 
  private:
   struct Entry {
-    std::int64_t modified;  // time of modification [ns]
+    std::filesystem::file_time_type modified;
     std::uintmax_t bytes;
     BagContent content;
   };
