@@ -1,19 +1,14 @@
 // read_bags: writes the samples of bags as training reads them, for programs in Python.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_bag_io/bag_reader.h>
-#include <ddm_common/config_blocks.h>
 #include <ddm_common/param_reader.h>
 #include <ddm_common/param_value.h>
 #include <ddm_common/plain_file.h>
-#include <ddm_common/tool.h>
 #include <ros/time.h>
-#include <unistd.h>
 
-#include <boost/algorithm/string/join.hpp>
 #include <filesystem>
 #include <iostream>
 #include <string>
-#include <vector>
 
 #include "bag_arguments.h"
 
@@ -23,16 +18,8 @@ namespace {
 
 constexpr int kMaxImageSize = 16384;  // limit of the image size of a model
 
-struct Arguments {
-  std::vector<std::string> configs;
-  int image_size = 0;
-  std::string out;
-  std::vector<std::string> bags;
-  YAML::Node data_set;  // from the command line
-};
-
 /// @return false if --help was given and has been printed
-bool parse(int argc, char** argv, Arguments* arguments) {
+bool parse(int argc, char** argv, ddm::BagArguments* arguments, int* image_size) {
   po::options_description options(
       "Writes the frames of bags, paired, cropped and resized as training reads them.\n\n"
       "usage: rosrun ddm_model read_bags --image-size N --out DIR [--config FILE]... BAG...\n\n"
@@ -43,19 +30,12 @@ bool parse(int argc, char** argv, Arguments* arguments) {
       "        Likewise the times images_without_torque and torques_without_image.\n"
       "        What to know about a bag is in the notes of bag.yaml and on standard error.\n\n"
       "options");
-  options.add_options()("image-size",
-                        po::value(&arguments->image_size)->required()->value_name("N"),
-                        "images are brought to N x N pixels");
-  options.add_options()("out", po::value(&arguments->out)->required()->value_name("DIR"),
-                        "folder of these folders; made if need be");
-  options.add_options()("config", po::value(&arguments->configs)->composing()->value_name("FILE"),
-                        "YAML file whose block data_set names the topics; repeatable");
-  ddm::addBagOptions(&options, &arguments->data_set);
-  const ddm::Positional bags{"bag", po::value(&arguments->bags)->required(), -1};
-  if (!ddm::parseCommandLine(argc, argv, options, bags)) return false;
-  if (arguments->image_size < 1 || arguments->image_size > kMaxImageSize) {
+  options.add_options()("image-size", po::value(image_size)->required(),
+                        "images are brought to this width and height [pixels]");
+  if (!arguments->parse(argc, argv, options)) return false;
+  if (*image_size < 1 || *image_size > kMaxImageSize) {
     throw po::error("--image-size must lie in [1, " + std::to_string(kMaxImageSize) + "], got " +
-                    std::to_string(arguments->image_size));
+                    std::to_string(*image_size));
   }
   return true;
 }
@@ -83,23 +63,17 @@ void writeBag(const ddm::BagContent& content, const std::string& folder) {
   ddm::writeFileAtomically(folder + "/bag.yaml", YAML::Dump(bag) + "\n");
 }
 
-void run(const Arguments& arguments) {
-  YAML::Node blocks(YAML::NodeType::Map);
-  for (const std::string& file : arguments.configs) ddm::overlay(ddm::readBlocks(file), &blocks);
-  ddm::overlay(arguments.data_set, &blocks);
-  ddm::ParamReader params(blocks, boost::algorithm::join(arguments.configs, ", "));
+void run(const ddm::BagArguments& arguments, int image_size) {
+  ddm::ParamReader params(arguments.blocks(), arguments.files());
   const auto topics = params.read<ddm::BagOptions>("data_set");
   params.requireValid();
-  const bool live = ::isatty(STDERR_FILENO) != 0;
-  const std::size_t number = arguments.bags.size();
   ddm::DifferentBags different;
-  for (std::size_t i = 0; i < number; ++i) {
-    if (live) std::cerr << "\rbag " << i + 1 << " of " << number << (i + 1 == number ? "\n" : "");
+  for (std::size_t i = 0; i < arguments.bags.size(); ++i) {
     const std::string& bag = arguments.bags[i];
-    const ddm::BagContent content = ddm::readBag(bag, arguments.image_size, topics);
+    const ddm::BagContent content = ddm::readBag(bag, image_size, topics);
     different.require(bag, content);
     for (const std::string& note : content.notes) {
-      std::cerr << (live ? "\n" : "") << "warning: bag " << bag << ": " << note << "\n";
+      std::cerr << "warning: bag " << bag << ": " << note << "\n";
     }
     writeBag(content, arguments.out + "/" + std::to_string(i));
   }
@@ -109,7 +83,9 @@ void run(const Arguments& arguments) {
 
 int main(int argc, char** argv) {
   ros::Time::init();
-  Arguments arguments;
+  ddm::BagArguments arguments;
+  int image_size = 0;
   return ddm::runTool(
-      "read_bags", [&] { return parse(argc, argv, &arguments); }, [&] { run(arguments); });
+      "read_bags", [&] { return parse(argc, argv, &arguments, &image_size); },
+      [&] { run(arguments, image_size); });
 }

@@ -2,10 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_bag_io/bag_cache.h>
 #include <ddm_bag_io/model_config.h>
-#include <ddm_common/config_blocks.h>
 #include <ddm_common/image_codec.h>
 #include <ddm_common/plain_file.h>
-#include <ddm_common/tool.h>
 #include <ddm_model/minimise.h>
 #include <ddm_model/model_file.h>
 #include <ddm_model/per_motor.h>
@@ -13,7 +11,6 @@
 #include <ros/time.h>
 #include <unistd.h>
 
-#include <boost/algorithm/string/join.hpp>
 #include <iostream>
 #include <sstream>
 #include <string>
@@ -25,14 +22,10 @@ namespace po = boost::program_options;
 
 namespace {
 
-struct Arguments {
-  std::vector<std::string> configs;
+struct Arguments : ddm::BagArguments {
   std::vector<std::string> values;
   std::string goal;
   std::int64_t seed = 0;  // signed, so that -1 is refused instead of read as a huge number
-  std::string out;
-  std::vector<std::string> bags;
-  YAML::Node data_set;  // from the command line
 };
 
 /// @return false if --help was given and has been printed
@@ -40,12 +33,10 @@ bool parse(int argc, char** argv, Arguments* arguments) {
   po::options_description options(
       "Trains a deep dynamical model from recorded bags, without a ROS master.\n\n"
       "usage: rosrun ddm_model train_from_bags [--config FILE]... [--goal IMAGE] [--seed N]\n"
-      "                                        --out FILE BAG...\n\noptions",
+      "                                        --out FILE BAG...\n\n"
+      "The blocks image, model, training and data_set count. The limits of the motors are\n"
+      "model/max_torque, else those of a block robot or plant.\n\noptions",
       100);
-  options.add_options()("config", po::value(&arguments->configs)->composing(),
-                        "YAML file with blocks image, model, training, data_set; repeatable, later "
-                        "files win. The limits of the motors are model/max_torque, else those of "
-                        "a block robot or plant");
   options.add_options()("set", po::value(&arguments->values)->composing(),
                         "BLOCK/KEY=VALUE, wins over all files; a list is [A, B]; repeatable");
   options.add_options()("goal", po::value(&arguments->goal),
@@ -53,15 +44,10 @@ bool parse(int argc, char** argv, Arguments* arguments) {
                         "has one");
   options.add_options()("seed", po::value(&arguments->seed)->default_value(0),
                         "seed of the initial parameters");
-  options.add_options()("out", po::value(&arguments->out), "model file to write");
-  ddm::addBagOptions(&options, &arguments->data_set);
-  const ddm::Positional bags{"bag", po::value(&arguments->bags), -1};
-  if (!ddm::parseCommandLine(argc, argv, options, bags)) return false;
-  if (arguments->out.empty()) throw po::error("--out FILE is missing: say where the model goes");
+  if (!arguments->parse(argc, argv, options)) return false;
   if (arguments->seed < 0) {
     throw po::error("--seed must be >= 0, got " + std::to_string(arguments->seed));
   }
-  if (arguments->bags.empty()) throw po::error("no BAG was given: there is nothing to learn from");
   return true;
 }
 
@@ -73,23 +59,11 @@ bool showProgress(const ddm::TrainingProgress& progress) {
   return true;
 }
 
-/// Reads the blocks of all files and options. If they have no `model/max_torque`, the limits of a
-/// robot or plant in them are used.
-/// @param limits_from  out: name of the parameter that gives the limits
-/// @throws std::invalid_argument if only the model file of a plant gives the limits
-YAML::Node readConfigs(const Arguments& arguments, std::string* limits_from) {
-  YAML::Node blocks(YAML::NodeType::Map);
-  for (const std::string& file : arguments.configs) ddm::overlay(ddm::readBlocks(file), &blocks);
-  ddm::overlay(arguments.data_set, &blocks);
-  for (const std::string& value : arguments.values) ddm::setValue(value, &blocks);
-  *limits_from = ddm::takeOverLimits("model", &blocks);
-  return blocks;
-}
-
 void run(const Arguments& arguments) {
-  std::string limits_from;
-  ddm::ParamReader params(readConfigs(arguments, &limits_from),
-                          boost::algorithm::join(arguments.configs, ", "));
+  YAML::Node blocks = arguments.blocks();
+  for (const std::string& value : arguments.values) ddm::setValue(value, &blocks);
+  const std::string limits_from = ddm::takeOverLimits("model", &blocks);
+  ddm::ParamReader params(blocks, arguments.files());
   const ddm::ModelConfig config = ddm::readModelConfig(&params);
   params.requireValid();
   const auto warn = [](const std::string& note) { std::cerr << "warning: " << note << "\n"; };
