@@ -4,6 +4,7 @@
 #include <ddm_bag_io/bag_cache.h>
 #include <ddm_bag_io/model_config.h>
 #include <ddm_bag_io/model_message.h>
+#include <ddm_common/option_checks.h>
 #include <ddm_common/run_node.h>
 #include <ddm_model/minimise.h>
 #include <ddm_model/trainer.h>

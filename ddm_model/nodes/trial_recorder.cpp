@@ -27,6 +27,7 @@ using Seconds = std::chrono::duration<double>;
 
 constexpr int kQueue = 1000;  // a slow disk must not lose an image
 constexpr Seconds kSlice(0.1);
+constexpr double kTimeout = 5.0;  // wall time in which a trial's last messages must arrive [s]
 
 /// Refuses a path that is no *.bag or that exists.
 void requireNew(const std::string& path) {
@@ -45,8 +46,7 @@ void requireNew(const std::string& path) {
 /// node needs a spinner with at least two threads, because stop() waits for messages on their way.
 class TrialRecorder {
  public:
-  TrialRecorder(ros::NodeHandle nh, const BagOptions& bag, const RecorderOptions& options)
-      : bag_options_(bag), options_(options), transport_(nh) {
+  TrialRecorder(ros::NodeHandle nh, const BagOptions& options) : options_(options), transport_(nh) {
     // Without TCP_NODELAY, TCP holds an image back until the one before is acknowledged.
     const auto no_delay = ros::TransportHints().tcpNoDelay();
     goal_sub_ = nh.subscribe<sensor_msgs::Image>(topics::kGoalImage, 1,
@@ -108,7 +108,7 @@ class TrialRecorder {
     std::unique_ptr<BagWriter> bag;
     try {
       requireNew(request.path);
-      bag = std::make_unique<BagWriter>(request.path, bag_options_);
+      bag = std::make_unique<BagWriter>(request.path, options_);
     } catch (const std::exception& e) {
       response.message = e.what() + std::string(bag_ == nullptr ? "" : "; the recording goes on");
       ROS_ERROR_STREAM(response.message);
@@ -154,7 +154,7 @@ class TrialRecorder {
     std::ostringstream text;
     if (!hasGoal(request)) {
       text << "no goal image with stamp " << request.goal << " came on " << goal_sub_.getTopic()
-           << " within recorder/timeout = " << options_.timeout << " s, ";
+           << " within " << kTimeout << " s, ";
       if (goal_ == nullptr) {
         text << "nor any other";
       } else {
@@ -164,7 +164,7 @@ class TrialRecorder {
     } else if (!complete(request)) {
       text << "of " << request.num_steps << " images and torques that are due, the bag holds "
            << bag_->images().size() << " and " << bag_->torques().size() << ", and "
-           << bag_->numFrames() << " pairs of them after recorder/timeout = " << options_.timeout
+           << bag_->numFrames() << " pairs of them after " << kTimeout
            << " s; whether a torque acted on the others was not reported: publish "
            << torque_sub_.getTopic() << " for each image";
     } else if (bag_->numFrames() == 0) {
@@ -191,7 +191,7 @@ class TrialRecorder {
     const auto decided = [&] { return replaced() || !error_.empty() || complete(request); };
     // Waits in slices: if the process is paused, at most one slice is lost, and messages that arrived
     // meanwhile are still read.
-    for (double left = options_.timeout; left > 0.0; left -= kSlice.count()) {
+    for (double left = kTimeout; left > 0.0; left -= kSlice.count()) {
       if (changed_.wait_for(lock, std::min(kSlice, Seconds(left)), decided)) break;
     }
     if (replaced()) {
@@ -215,8 +215,7 @@ class TrialRecorder {
     return true;
   }
 
-  BagOptions bag_options_;
-  RecorderOptions options_;
+  BagOptions options_;
   std::mutex mutex_;
   std::condition_variable changed_;
   std::unique_ptr<BagWriter> bag_;  // null: not recording
@@ -240,10 +239,9 @@ class TrialRecorder {
 int main(int argc, char** argv) {
   return ddm::runNode("trial_recorder", argc, argv, [](auto nh, auto, ddm::ParamReader* params) {
     params->ignore("image_transport");  // image_transport reads it
-    const auto bag = params->read<ddm::BagOptions>("data_set");
-    const auto options = params->read<ddm::RecorderOptions>("recorder");
+    const auto options = params->read<ddm::BagOptions>("data_set");
     params->requireValid();
-    ddm::TrialRecorder recorder(nh, bag, options);
+    ddm::TrialRecorder recorder(nh, options);
     ros::MultiThreadedSpinner(2).spin();
   });
 }

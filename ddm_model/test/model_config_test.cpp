@@ -20,7 +20,6 @@ TEST(ModelReference, HasTheKeysAndDefaultsOfEachBlock) {
   testing::expectDefaults<ModelOptions>(DDM_MODEL_MANUAL, "model");
   testing::expectDefaults<TrainingOptions>(DDM_MODEL_MANUAL, "training");
   testing::expectDefaults<BagOptions>(DDM_MODEL_MANUAL, "data_set");
-  testing::expectDefaults<RecorderOptions>(DDM_MODEL_MANUAL, "recorder");
 }
 
 TEST(ModelConfig, ItsTextReadsBackAsTheSameConfiguration) {
@@ -65,13 +64,10 @@ TEST(ModelConfig, RefusesEachValueOutOfRangeWithItsKeyRuleAndValue) {
       {"training: {lbfgs_rank: 0}", {"training/lbfgs_rank", "got 0"}},
       {"data_set: {image_topic: camera/}", {"data_set/image_topic", "got 'camera/'"}},
       {"data_set: {goal_topic: /}", {"data_set/goal_topic", "got '/'"}},
-      {"data_set: {goal_topic: /torque}", {"data_set/torque_topic", "goal_topic"}},
-      {"recorder: {timeout: 0.0}", {"recorder/timeout", "(0, 86400]", "got 0"}},
-      {"recorder: {timeout: .nan}", {"recorder/timeout", "got nan"}}};
+      {"data_set: {goal_topic: /torque}", {"data_set/torque_topic", "goal_topic"}}};
   for (const auto& [yaml, parts] : rows) {
     ParamReader reader(YAML::Load(yaml));
     readModelConfig(&reader);
-    reader.read<RecorderOptions>("recorder");
     EXPECT_TRUE(throwsNaming<std::invalid_argument>([&] { reader.requireValid(); }, parts)) << yaml;
   }
 }

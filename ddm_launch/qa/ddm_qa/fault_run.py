@@ -29,7 +29,6 @@ CONFIG = """\
 training: {{max_iterations: 15000, function_tolerance: 0.0}}
 sim: {{watchdog: {0}}}
 controller: {{timeout: {1}}}
-recorder: {{timeout: {0}}}
 experiment: {{timeout: {2}}}
 """
 SILENT_S = (5.0, 8.0, 11.0)  # time limits for silent nodes

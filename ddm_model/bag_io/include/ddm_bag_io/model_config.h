@@ -3,31 +3,14 @@
 #pragma once
 
 #include <ddm_common/image_options.h>
-#include <ddm_common/option_checks.h>
 #include <ddm_common/param_reader.h>
 #include <ddm_model/model_options.h>
 
 #include <string>
-#include <vector>
 
 #include "ddm_bag_io/bag_reader.h"
 
 namespace ddm {
-
-/// Block `recorder`.
-struct RecorderOptions {
-  double timeout = 5.0;  ///< wall time in which a trial's last messages must arrive [s]
-
-  template <class Visitor>
-  void visit(Visitor& visitor) {
-    visitor("timeout", timeout);
-  }
-  std::vector<std::string> problems() const {
-    OptionChecks recorder("recorder");
-    recorder.requireTimeLimit("timeout", timeout);
-    return recorder.problems();
-  }
-};
 
 /// The blocks `image`, `model`, `training` and `data_set`.
 struct ModelConfig {
