@@ -52,37 +52,34 @@ def bags_table(data):
 
 
 def figures_of(data):
-    """List of (title, function that draws the figure, caption), in the order of the report."""
-    out = [("Principal components", lambda: report_figures.draw_spectrum(data),
-            "How much each component matters. A curve that has not come down at its right end asks for more of them.")]
+    """Yields (title, figure, caption) in the order of the report."""
+    yield ("Principal components", report_figures.draw_spectrum(data),
+           "How much each component matters. A curve that has not come down at its right end asks for more of them.")
     if data.bags is not None:
-        out.append(("Pairs of image and torque", lambda: report_figures.draw_pairing(data),
-                    "When there are frames, and when images and torques that have no partner. A frame that is missing "
-                    "splits its bag, and nothing is predicted across it."))
-        out.append(("Reconstructions", lambda: report_figures.draw_reconstructions(data),
-                    "Images, what the principal components keep of them after model/blur, and what the features keep."))
-        for kind, words in (("typical", "in the middle"), ("worst", "at the end")):
-            if kind in data.predictions:
-                out.append(("A prediction: %s" % kind, lambda kind=kind: report_figures.draw_prediction(data, kind),
-                            "Steps ahead above each picture. Of all predictions this one is %s of the order by error; "
-                            "only the first picture was seen, and the torques." % words))
+        yield ("Pairs of image and torque", report_figures.draw_pairing(data),
+               "When there are frames, and when images and torques that have no partner. A frame that is missing splits its "
+               "bag, and nothing is predicted across it.")
+        yield ("Reconstructions", report_figures.draw_reconstructions(data),
+               "Images, what the principal components keep of them after model/blur, and what the features keep.")
+        for kind, prediction in data.predictions.items():
+            yield ("A prediction: %s" % kind, report_figures.draw_prediction(data, prediction),
+                   "Steps ahead above each picture. By error, this prediction is %s of all; only the first picture was seen, "
+                   "and the torques." % {"typical": "the median", "worst": "the worst"}[kind])
         if len(data.errors["steps"]) > 0:
-            out.append(("Error by step", lambda: report_figures.draw_errors(data),
-                        "Over %d predictions of each length. Predictions must stay below the grey curve to be of use."
-                        % data.errors["num_predictions"][0]))
+            yield ("Error by step", report_figures.draw_errors(data),
+                   "Over %d predictions of each length. Predictions must stay below the grey curve to be of use."
+                   % data.errors["num_predictions"][0])
     if data.options["feature_dim"] >= 2:
-        out.append(("Feature plane", lambda: report_figures.draw_plane(data),
-                    "Images that the model decodes at 9 x 9 features, and where the frames lie. Neighbouring images must "
-                    "look alike, and motions be paths without jumps."))
+        yield ("Feature plane", report_figures.draw_plane(data),
+               "Images that the model decodes at 9 x 9 features, and where the frames lie. Neighbouring images must look "
+               "alike, and motions be paths without jumps.")
     if data.bags is not None:
-        out.append(("Coverage", lambda: report_figures.draw_coverage(data),
-                    "How often each feature and torque occurs; dashed: model/max_torque."))
-    return out
+        yield ("Coverage", report_figures.draw_coverage(data),
+               "How often each feature and torque occurs; dashed: model/max_torque.")
 
 
-def build_page(data, path):
-    """Returns (HTML page of the report, checks)."""
-    checks = verdict(data)
+def build_page(data, path, checks):
+    """HTML page of the report."""
     sections = ["<h2>Verdict</h2>", report.verdict_table(checks)]
     if data.bags is None:
         sections.append("<p>No bag was given: give some that the model has not learned from to have its predictions "
@@ -94,14 +91,13 @@ def build_page(data, path):
         sections += ["<p></p>", bags_table(data)]
     if data.notes:
         sections += ["<p></p>", report.table(["bag", "what to know about it"], data.notes)]
-    drawn = figures_of(data)
-    for i, (title, draw, caption) in enumerate(drawn):
-        say("drawing %d of %d: %s" % (i + 1, len(drawn), title))
-        sections.append(report.figure(title, report_figures.as_data_uri(draw()), caption))
+    say("drawing")
+    sections += [report.figure(title, report_figures.as_data_uri(figure), caption)
+                 for title, figure, caption in figures_of(data)]
     sections += ["<h2>Configuration that it was trained with</h2>",
                  "<pre>%s</pre>" % report.escaped(data.model.info["config"])]
     failed = any(check.ok is False for check in checks)
-    return report.page("Model %s" % data.model.info["id"], summary(checks), failed, sections), checks
+    return report.page("Model %s" % data.model.info["id"], summary(checks), failed, sections)
 
 
 def inspect(path, bags, out, steps, options):
@@ -110,7 +106,8 @@ def inspect(path, bags, out, steps, options):
     Raises ModelDataError if a bag cannot be read, OSError if a file cannot be read or written.
     """
     data = ModelData(load(path), bags, steps, options, say)
-    page, checks = build_page(data, path)
+    checks = verdict(data)
+    page = build_page(data, path, checks)
     os.makedirs(out, exist_ok=True)
     write_file(os.path.join(out, "model.yaml"), yaml.safe_dump(facts_of(data.model), sort_keys=False,
                                                                default_flow_style=None))

@@ -83,9 +83,8 @@ def draw_reconstructions(data):
                      ["frame %d" % frame for frame in shown])
 
 
-def draw_prediction(data, kind):
+def draw_prediction(data, prediction):
     """Draws recorded images, predicted images and the last frame repeated, from 0 steps ahead on."""
-    prediction = data.predictions[kind]
     steps = len(prediction.images)
     shown = np.unique(np.linspace(0, steps - 1, min(steps, MAX_COLUMNS)).round().astype(int))
     return draw_rows([data.images[prediction.frame + shown], prediction.images[shown],
