@@ -19,7 +19,7 @@ BLUE, VERMILLION, YELLOW, GREY, LIGHT = "#0072B2", "#D55E00", "#F0E442", "#66666
 WIDTH = 9.0  # [in]
 MAX_COLUMNS = 16  # largest number of images side by side
 RECONSTRUCTIONS = 8
-BAGS = 20
+MAX_HEIGHT = 30.0  # [in], that of about 100 bags
 
 
 def as_data_uri(figure):
@@ -44,32 +44,27 @@ def draw_spectrum(data):
     figure, axes = new_axes(3.0, columns=1 if data.spectrum is None else 2)
     variance = data.model.arrays["pca_variance"]
     axes[0].semilogy(np.arange(1, len(variance) + 1), variance, color=BLUE, marker="o", markersize=3)
-    axes[0].set_xlabel("principal component")
-    axes[0].set_ylabel("variance [grey²]")
-    axes[0].set_title("images learned from")
+    axes[0].set(xlabel="principal component", ylabel="variance [grey²]", title="images learned from")
     if data.spectrum is not None:
         share = 100.0 * np.cumsum(data.spectrum["share"])
         axes[1].plot(data.spectrum["component"], share, color=VERMILLION, marker="o", markersize=3)
-        axes[1].set_ylim(0.0, 103.0)
-        axes[1].set_xlabel("principal components kept")
-        axes[1].set_ylabel("of these bags' images [%]")
-        axes[1].set_title("images of these bags")
+        axes[1].set(ylim=(0.0, 103.0), xlabel="principal components kept", ylabel="of these bags' images [%]",
+                    title="images of these bags")
     return figure
 
 
 def draw_rows(rows, labels, columns):
-    """Draws rows of grey images. labels: text at the left of each row. columns: text above each column."""
-    shape = (len(rows), len(columns))
-    figure, axes = plt.subplots(*shape, figsize=(WIDTH, WIDTH / max(len(columns), 6) * len(rows) * 1.12), squeeze=False)
-    for i, (row, label) in enumerate(zip(rows, labels)):
-        for j, picture in enumerate(row):
-            axes[i, j].imshow(picture, cmap="gray", vmin=0, vmax=255, interpolation="nearest")
-            axes[i, j].set_xticks([])
-            axes[i, j].set_yticks([])
-            if i == 0:
-                axes[i, j].set_title(columns[j], fontsize=9)
-        axes[i, 0].set_ylabel(label, fontsize=9, rotation=0, ha="right", va="center")
-    figure.tight_layout(pad=0.3)  # constrained layout takes minutes for so many axes in matplotlib 3.3
+    """Draws rows of grey images side by side. labels: text at the left of each row. columns: text above each column."""
+    size = len(rows[0][0])
+    figure, axes = plt.subplots(figsize=(WIDTH, WIDTH / max(len(columns), 6) * len(rows) * 1.12), constrained_layout=True)
+    axes.imshow(np.vstack([np.hstack(list(row)) for row in rows]), cmap="gray", vmin=0, vmax=255, interpolation="nearest")
+    for axis, texts in ((axes.xaxis, columns), (axes.yaxis, labels)):
+        axis.set_ticks(size * (np.arange(len(texts)) + 0.5) - 0.5)
+        axis.set_ticklabels(texts, fontsize=9)
+        axis.set_ticks(size * np.arange(1, len(texts)) - 0.5, minor=True)
+        axis.set_tick_params(which="both", length=0)
+    axes.xaxis.tick_top()
+    axes.grid(True, which="minor", color="white", linewidth=2.0)
     return figure
 
 
@@ -100,9 +95,7 @@ def draw_errors(data):
             ("rmse", BLUE, "o-", "predicted"), ("rmse_repeat", GREY, "s--", "last frame repeated"),
             ("rmse_mean_torque", VERMILLION, "^:", "predicted without knowing the torques")):
         axes.plot(steps, data.errors[column], style, color=colour, markersize=4, label=label)
-    axes.set_ylim(bottom=0.0)
-    axes.set_xlabel("steps ahead")
-    axes.set_ylabel("error of a pixel, rms [grey]")
+    axes.set(ylim=(0.0, None), xlabel="steps ahead", ylabel="error of a pixel, rms [grey]")
     axes.legend()
     return figure
 
@@ -135,22 +128,14 @@ def draw_plane(data):
 
 
 def draw_pairing(data):
-    """Draws the times of frames, and of images and torques without a partner. Each bag has a row. If there are more
-    than BAGS bags, shows those with the most missing partners."""
-    missing = sum(np.bincount(times[0].astype(int), minlength=len(data.bags["bag"])) for times in data.unpaired.values())
-    bags = np.sort(np.argsort(-missing, kind="stable")[:BAGS])
-    figure, (axes,) = new_axes(0.9 + 0.3 * len(bags))
-    frames = data.frames["bag"], data.frames["time_s"]
-    for (label, (numbers, times)), colour, shift in zip(
-            [("frames", frames)] + list(data.unpaired.items()), (GREY, VERMILLION, BLUE), (0.0, -0.3, 0.3)):
-        rows = np.searchsorted(bags, numbers)
-        shown = np.isin(numbers, bags)
-        axes.plot(times[shown], rows[shown] + shift, "|", color=colour, markersize=5,
-                  label="%s: %d" % (label, len(numbers)))
-    axes.set_yticks(np.arange(len(bags)))
-    axes.set_yticklabels([os.path.basename(data.bags["bag"][bag]) for bag in bags])
-    axes.set_ylim(len(bags) - 0.4, -0.6)
-    axes.set_xlabel("time since the bag's first frame [s]")
+    """Draws the times of frames, and of images and torques without a partner. Each bag has a row."""
+    names = [os.path.basename(path) for path in data.bags["bag"]]
+    figure, (axes,) = new_axes(min(0.9 + 0.3 * len(names), MAX_HEIGHT))
+    kinds = {"frames": (data.frames["bag"], data.frames["time_s"]), **data.unpaired}
+    for (label, (bags, times)), colour, shift in zip(kinds.items(), (GREY, VERMILLION, BLUE), (0.0, -0.3, 0.3)):
+        axes.plot(times, bags + shift, "|", color=colour, markersize=5, label="%s: %d" % (label, len(bags)))
+    axes.set(yticks=np.arange(len(names)), yticklabels=names, ylim=(len(names) - 0.4, -0.6),
+             xlabel="time since the bag's first frame [s]")
     axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncol=3, frameon=False)
     return figure
 
@@ -166,8 +151,7 @@ def draw_coverage(data):
         one.hist(values, bins=30, color=BLUE)
         one.yaxis.set_major_locator(MaxNLocator(nbins=6, integer=True))
         one.set_xlabel(label)
-        if limit is not None:
-            one.axvline(-limit, color=GREY, linestyle="--")
-            one.axvline(limit, color=GREY, linestyle="--")
+        for line in () if limit is None else (-limit, limit):
+            one.axvline(line, color=GREY, linestyle="--")
     axes[0].set_ylabel("frames")
     return figure
