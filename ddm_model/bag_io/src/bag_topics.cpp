@@ -241,49 +241,47 @@ class TorqueReader {
   std::map<std::string, std::size_t> without_effort_;  // number of messages, by publisher
 };
 
-/// Publishers of a topic, and the times at which they published.
-class Publishers {
- public:
-  void add(const std::string& name, const ros::Time& time) {
-    Span& span = spans_.try_emplace(name, Span{time, time}).first->second;
-    span.first = std::min(span.first, time);
-    span.last = std::max(span.last, time);
-    ++span.number;
-  }
+/// Messages of a topic by one publisher.
+struct Published {
+  ros::Time first, last;
+  std::size_t number = 0;
 
-  /// Checks that no two publishers published at the same time. Ignores publishers without a name,
-  /// which rosbag omits in some latched messages.
-  /// @param what    beginning of the message, before the publishers
-  /// @param remedy  remedy for two publishers at the same time
-  /// @return        note to the user if several published, one after the other; otherwise empty
-  /// @throws std::runtime_error if two published at the same time
-  std::string requireOneAtATime(const std::string& what, const std::string& remedy) const {
-    std::vector<std::pair<std::string, Span>> named;
-    for (const auto& entry : spans_) {
-      if (!entry.first.empty()) named.push_back(entry);
-    }
-    std::sort(named.begin(), named.end(),
-              [](const auto& a, const auto& b) { return a.second.first < b.second.first; });
-    bool overlap = false;
-    std::vector<std::string> texts;
-    for (std::size_t i = 0; i < named.size(); ++i) {
-      const Span& span = named[i].second;
-      texts.push_back(textOf(named[i].first, " (", span.number, " from ", timeText(span.first),
-                             " to ", timeText(span.last), ")"));
-      overlap = overlap || (i > 0 && span.first <= named[i - 1].second.last);
-    }
-    const std::string text = what + boost::algorithm::join(texts, " and ");
-    if (overlap) refuseBag(text, ": ", remedy);
-    return named.size() > 1 ? text + ", one after the other: all of them count" : "";
+  void add(const ros::Time& time) {
+    first = number == 0 ? time : std::min(first, time);
+    last = std::max(last, time);
+    ++number;
   }
-
- private:
-  struct Span {
-    ros::Time first, last;
-    std::size_t number = 0;
-  };
-  std::map<std::string, Span> spans_;
 };
+using Publishers = std::map<std::string, Published>;  // by name of the node
+
+/// Checks that no two publishers published at the same time. Adds a note if several published, one
+/// after the other. Ignores publishers without a name, which rosbag omits in some latched messages.
+/// @param what    beginning of the message, before the publishers
+/// @param remedy  remedy for two publishers at the same time
+/// @throws std::runtime_error if two published at the same time
+void requireOneAtATime(const Publishers& publishers, const std::string& what,
+                       const std::string& remedy, Names* notes) {
+  std::vector<Publishers::value_type const*> named;
+  for (const auto& publisher : publishers) {
+    if (!publisher.first.empty()) named.push_back(&publisher);
+  }
+  if (named.size() < 2) return;
+  std::sort(named.begin(), named.end(),
+            [](const auto* a, const auto* b) { return a->second.first < b->second.first; });
+  bool overlap = false;
+  ros::Time last;  // of the publishers so far
+  Names texts;
+  for (const auto* publisher : named) {
+    const auto& [name, published] = *publisher;
+    texts.push_back(textOf(name, " (", published.number, " from ", timeText(published.first),
+                           " to ", timeText(published.last), ")"));
+    overlap = overlap || (texts.size() > 1 && published.first <= last);
+    last = published.last;
+  }
+  const std::string text = what + boost::algorithm::join(texts, " and ");
+  if (overlap) refuseBag(text, ": ", remedy);
+  notes->push_back(text + ", one after the other: all of them count");
+}
 
 /// Reads the times of an image, and hashes its content without the header.
 BagImage bagImageOf(const BagMessage& message, std::size_t number) {
@@ -335,10 +333,10 @@ Pairs readPairs(BagFile* bag, const BagTopics& topics, const BagOptions& options
   std::vector<BagTorque> torques;
   bag->forEachMessage({topics.images.name, topics.torques.name}, [&](const BagMessage& message) {
     if (message.connection.topic == topics.images.name) {
-      cameras.add(message.connection.publisher, message.recorded);
+      cameras[message.connection.publisher].add(message.recorded);
       images.push_back(bagImageOf(message, images.size()));
     } else if (const std::optional<BagTorque> torque = reader.read(message)) {
-      controllers.add(message.connection.publisher, message.recorded);
+      controllers[message.connection.publisher].add(message.recorded);
       torques.push_back(*torque);
     }
   });
@@ -350,16 +348,15 @@ Pairs readPairs(BagFile* bag, const BagTopics& topics, const BagOptions& options
               unknown.empty() ? "" : " (" + unknown + " have no effort or number of them)",
               ": leave this bag out, or set data_set/torque_topic and motors");
   }
-  std::vector<std::string> notes;
+  Names notes;
   if (!unknown.empty()) {
     notes.push_back("topic " + topic + ": " + unknown +
                     " have no effort or number of the motors and do not count");
   }
-  notes.push_back(controllers.requireOneAtATime("topic " + topic + " has torques of ",
-                                                "record the one that moves the motor"));
-  notes.push_back(cameras.requireOneAtATime("topic " + topics.images.name + " has images of ",
-                                            "record each camera on a topic of its own"));
-  notes.erase(std::remove(notes.begin(), notes.end(), ""), notes.end());
+  requireOneAtATime(controllers, "topic " + topic + " has torques of ",
+                    "record the one that moves the motor", &notes);
+  requireOneAtATime(cameras, "topic " + topics.images.name + " has images of ",
+                    "record each camera on a topic of its own", &notes);
   const bool by_stamp = answersImages(topics.torques.type);
   Pairs pairs = pairUp(std::move(images), std::move(torques), by_stamp ? 0.0 : options.dt);
   pairs.notes.insert(pairs.notes.begin(), notes.begin(), notes.end());
