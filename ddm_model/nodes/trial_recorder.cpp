@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_bag_io/bag_writer.h>
 #include <ddm_bag_io/model_config.h>
+#include <ddm_common/option_checks.h>
 #include <ddm_common/run_node.h>
 #include <ddm_msgs/StartRecording.h>
 #include <ddm_msgs/StopRecording.h>
@@ -17,7 +18,6 @@
 #include <memory>
 #include <mutex>
 #include <set>
-#include <sstream>
 #include <string>
 
 namespace ddm {
@@ -151,27 +151,22 @@ class TrialRecorder {
   /// @return why the bag does not contain the trial; empty if it does
   std::string shortcoming(const ddm_msgs::StopRecording::Request& request) const {
     if (request.num_steps == 0) return "";
-    std::ostringstream text;
     if (!hasGoal(request)) {
-      text << "no goal image with stamp " << request.goal << " came on " << goal_sub_.getTopic()
-           << " within " << kTimeout << " s, ";
-      if (goal_ == nullptr) {
-        text << "nor any other";
-      } else {
-        text << "the last one has stamp " << goal_->header.stamp;
-      }
-      text << ": publish it with the stamp that reset answers";
-    } else if (!complete(request)) {
-      text << "of " << request.num_steps << " images and torques that are due, the bag holds "
-           << bag_->images().size() << " and " << bag_->torques().size() << ", and "
-           << bag_->numFrames() << " pairs of them after " << kTimeout
-           << " s; whether a torque acted on the others was not reported: publish "
-           << torque_sub_.getTopic() << " for each image";
-    } else if (bag_->numFrames() == 0) {
-      text << "no torque acted in time: there is nothing to learn from in " << bag_->images().size()
-           << " images";
+      return textOf("no goal image with stamp ", request.goal, " came on ", goal_sub_.getTopic(),
+                    " within ", kTimeout, " s, the last one has stamp ",
+                    goal_ == nullptr ? ros::Time() : goal_->header.stamp,
+                    " (0: there is none): publish it with the stamp that reset answers");
     }
-    return text.str();
+    if (!complete(request)) {
+      return textOf("of ", request.num_steps, " images and torques that are due, the bag holds ",
+                    bag_->images().size(), " and ", bag_->torques().size(), ", and ",
+                    bag_->numFrames(), " pairs of them after ", kTimeout,
+                    " s; whether a torque acted on the others was not reported: publish ",
+                    torque_sub_.getTopic(), " for each image");
+    }
+    if (bag_->numFrames() > 0) return "";
+    return textOf("no torque acted in time: there is nothing to learn from in ",
+                  bag_->images().size(), " images");
   }
 
   bool stop(ddm_msgs::StopRecording::Request& request,

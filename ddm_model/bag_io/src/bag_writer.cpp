@@ -47,34 +47,28 @@ void claim(const std::string& active) {
 
 }  // namespace
 
+void CloseBag::operator()(rosbag::Bag* bag) const {
+  try {
+    bag->close();
+    delete bag;
+  } catch (const std::exception&) {
+    static auto* const leaked = new std::vector<rosbag::Bag*>;
+    leaked->push_back(bag);
+  }
+}
+
 BagWriter::BagWriter(const std::string& path, const BagOptions& options)
     : path_(path), options_(options) {
   claim(path_ + ".active");
-  bag_ = std::make_unique<rosbag::Bag>();
+  bag_.reset(new rosbag::Bag);
   try {
     bag_->open(path_ + ".active", rosbag::bagmode::Write);
     bag_->setCompression(rosbag::compression::LZ4);
     bag_->setChunkThreshold(kChunkBytes);
   } catch (const std::exception& e) {
-    abandon();
     ::unlink((path_ + ".active").c_str());  // it is still empty
     throw std::runtime_error("cannot write bag " + path_ + ".active: " + reason(path_, e));
   }
-}
-
-BagWriter::~BagWriter() {
-  try {
-    if (bag_->isOpen()) bag_->close();  // stays PATH.active, as close() was not called
-  } catch (const std::exception&) {     // a destructor cannot report an error
-    abandon();
-  }
-}
-
-/// Leaks the bag on purpose: its destructor closes it, which throws on a full disk and would end
-/// the process.
-void BagWriter::abandon() {
-  static auto* const abandoned = new std::vector<rosbag::Bag*>;
-  abandoned->push_back(bag_.release());
 }
 
 template <class Message>

@@ -14,18 +14,21 @@
 
 namespace ddm {
 
+/// Closes a bag. If that fails, as on a full disk, the bag leaks on purpose, since its destructor
+/// would throw and end the process.
+struct CloseBag {
+  void operator()(rosbag::Bag* bag) const;
+};
+
 /// Writes images, torques and the goal image of one trial to PATH.active, which close() renames to
-/// PATH. Chunks are LZ4, since uncompressed chunks have no checksum, and small, so that a recorder
-/// that is killed loses little.
+/// PATH. Without close(), PATH.active stays. Chunks are LZ4, since uncompressed chunks have no
+/// checksum, and small, so that a recorder that is killed loses little.
 class BagWriter {
  public:
   /// Creates PATH.active. An existing PATH.active is an error, since it may be all that is left of
   /// a trial; `rosbag reindex` can recover it.
   /// @throws std::runtime_error with the path and the reason
   BagWriter(const std::string& path, const BagOptions& options);
-  ~BagWriter();
-  BagWriter(const BagWriter&) = delete;
-  BagWriter& operator=(const BagWriter&) = delete;
 
   /// Each function writes a message at its header stamp (the goal image at `stamp`).
   /// @throws std::runtime_error with the path and the reason
@@ -46,11 +49,10 @@ class BagWriter {
  private:
   template <class Message>
   void writeAt(const std::string& topic, const ros::Time& stamp, const Message& message);
-  void abandon();
 
   std::string path_;
   BagOptions options_;
-  std::unique_ptr<rosbag::Bag> bag_;  // null if abandoned
+  std::unique_ptr<rosbag::Bag, CloseBag> bag_;
   std::set<ros::Time> images_;
   std::set<ros::Time> torques_;
 };
