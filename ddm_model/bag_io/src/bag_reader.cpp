@@ -4,12 +4,13 @@
 
 #include <ddm_common/image_codec.h>
 #include <ddm_common/option_checks.h>
+#include <ddm_common/param_value.h>
 #include <ddm_common/plain_file.h>
+#include <ddm_common/yaml_text.h>
 #include <sensor_msgs/CompressedImage.h>
 #include <sys/stat.h>
 
 #include <algorithm>
-#include <boost/algorithm/string/join.hpp>
 #include <boost/algorithm/string/predicate.hpp>
 #include <cerrno>
 #include <cstring>
@@ -26,13 +27,6 @@
 
 namespace ddm {
 namespace {
-
-/// @return numbers as text, such as "[1, 2]"
-std::string listOf(const std::vector<int>& numbers) {
-  std::vector<std::string> texts;
-  for (const int number : numbers) texts.push_back(std::to_string(number));
-  return "[" + boost::algorithm::join(texts, ", ") + "]";
-}
 
 constexpr int kFewGreyValues = 64;  // of 256; a 14 bit image in a 16 bit message has so few
 
@@ -176,9 +170,10 @@ std::vector<std::string> BagOptions::problems() const {
   data_set.require(std::none_of(motors.begin(), motors.end(),
                                 [](const std::string& motor) { return motor.empty(); }),
                    "motors", "be names", "an empty one");
-  data_set.require(crop.size() == 4 && std::all_of(crop.begin(), crop.end(),
-                                                   [](int n) { return n >= 0 && n <= 16384; }),
-                   "crop", "be [column, row, width, height], each in [0, 16384]", listOf(crop));
+  data_set.require(
+      crop.size() == 4 &&
+          std::all_of(crop.begin(), crop.end(), [](int n) { return n >= 0 && n <= 16384; }),
+      "crop", "be [column, row, width, height], each in [0, 16384]", oneLine(valueToYaml(crop)));
   return data_set.problems();
 }
 
