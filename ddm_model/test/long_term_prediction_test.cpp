@@ -1,8 +1,7 @@
-// Tests of long-term predictions: the roll-out, its errors, what they are compared with.
+// Tests of predictions: single steps and rollouts.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <stdexcept>
 
 #include "ddm_model/ddm.h"
@@ -16,12 +15,6 @@ namespace ddm {
 namespace {
 
 using testing::throwsNaming;
-
-double squaredError(const Grey& a, const Grey& b) {
-  double sum = 0.0;
-  for (size_t i = 0; i < a.size(); ++i) sum += std::pow((a[i] - b[i]) / 255.0, 2);
-  return sum;
-}
 
 /// z_{t+1} ... by hand, with the features and torques written out (n = 2).
 Eigen::VectorXd predictedByHand(const Ddm& model, const DataSet& data, Eigen::Index frame,
@@ -74,35 +67,13 @@ TEST(RollOut, ReachesFromTheFirstPossibleFrameToTheLast) {
       {"features [2 x 9] and torques [1 x 9], got [2 x 9] and [1 x 10]"}));
 }
 
-TEST(PredictionErrors, AreTheRootMeanSquareOverAllPredictionsAndPixels) {
+TEST(RollOut, AppliesTheNetworkToItsOwnPredictions) {
   const Ddm model = testing::toyModel();
-  DataSet data = testing::toyTrial(8, 1);
-  data.append(testing::toyTrial(5, 2));  // another segment
-  const auto errors = predictionErrors(model, data, 3);
-  ASSERT_EQ(errors.size(), 3u);
+  const DataSet data = testing::toyTrial(8, 1);
+  const Eigen::MatrixXd predicted = model.rollOut(encodeAll(model, data), data.torques(), 3, 3);
   for (int k = 1; k <= 3; ++k) {
-    double sum = 0.0, sum_repeat = 0.0;
-    int count = 0;
-    for (Eigen::Index frame : {1, 2, 3, 4, 9}) {  // one before, three after, in the same segment
-      const Grey truth = data.image(frame + k);
-      sum += squaredError(model.decode(predictedByHand(model, data, frame, k)), truth);
-      sum_repeat += squaredError(data.image(frame), truth);
-      count += static_cast<int>(truth.size());
-    }
-    EXPECT_EQ(errors[k - 1].steps, k);
-    EXPECT_EQ(errors[k - 1].num_predictions, 5);
-    EXPECT_NEAR(errors[k - 1].rmse, std::sqrt(sum / count), 1e-12);
-    EXPECT_NEAR(errors[k - 1].rmse_repeat, std::sqrt(sum_repeat / count), 1e-12);
+    EXPECT_TRUE(predicted.col(k).isApprox(predictedByHand(model, data, 3, k), 1e-12)) << k;
   }
-}
-
-TEST(PredictionErrors, RefusesDataWithoutALongEnoughSegment) {
-  const Ddm model = testing::toyModel();
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-      [&] { predictionErrors(model, testing::toyTrial(5, 1), 4); },
-      {"1 frames before", "4 after"}));
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-      [&] { predictionErrors(model, testing::toyTrial(9, 1), 0); }, {"steps", ">= 1"}));
 }
 
 }  // namespace

@@ -105,23 +105,4 @@ class Ddm {
 /// @throws std::invalid_argument if the size of the images is not that of the model
 Eigen::MatrixXd encodeAll(const Ddm& model, const DataSet& data);
 
-/// Prediction error for a given number of steps ahead.
-struct PredictionError {
-  int steps = 0;
-  Eigen::Index num_predictions = 0;
-  /// Root mean squared error over all pixels of all predicted images [grey].
-  double rmse = 0.0;
-  /// The same error if each image is predicted to equal the last image that was seen [grey].
-  double rmse_repeat = 0.0;
-};
-
-/// Computes the prediction errors on a data set. Rollouts start at all samples that have n + d - 1
-/// predecessors and max_steps successors without a gap.
-/// @param data       data that the model was not trained on
-/// @param max_steps  length of the rollouts, >= 1
-/// @return           errors for 1 ... max_steps steps ahead  [max_steps]
-/// @throws std::invalid_argument if max_steps < 1, if the data do not fit the model, or if no
-///                   rollout can start in them
-std::vector<PredictionError> predictionErrors(const Ddm& model, const DataSet& data, int max_steps);
-
 }  // namespace ddm
