@@ -3,6 +3,7 @@
 #pragma once
 
 #include <ddm_common/image_options.h>
+#include <ddm_common/option_checks.h>
 #include <ddm_common/param_reader.h>
 #include <ddm_model/model_options.h>
 
