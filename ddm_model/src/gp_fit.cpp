@@ -20,6 +20,7 @@ constexpr double kUnexplained = 0.1;  // variance without the centres / variance
 constexpr int kMaxIterations = 40;
 constexpr double kInitialNoise = 0.3;  // sigma, if the outputs have standard deviation 1
 constexpr double kJitter = 1e-8;       // added to the variance of the noise
+constexpr int kMaxFurtherSamples = 2;  // by which f may look back further than model/order
 constexpr double kRidge = 1e-3;        // of the linear mean, per sample
 
 // Weights of the prior: each hyper-parameter p adds w (p - p_0)^2, which is small next to the
@@ -90,6 +91,57 @@ PivotedCholesky decompose(const Eigen::MatrixXd& A, double variance, double tole
   return out;
 }
 
+/// A Gaussian process of which the hyper-parameters are known.
+struct DenseGp {
+  Eigen::VectorXd input_mean, input_spread, output_mean, output_spread;
+  Eigen::MatrixXd slope;    // of the linear mean function, for inputs of standard deviation 1
+  Eigen::MatrixXd outputs;  // what the linear mean does not explain, of standard deviation 1
+  Eigen::VectorXd p;        // hyper-parameters, see negativeLogLikelihood()
+  double criterion = 0.0;   // Bayesian information criterion / 2; the lower the better
+};
+
+/// Fits the linear mean by ridge regression, which leaves the mean of the outputs alone, and the
+/// hyper-parameters by minimise().
+DenseGp fitDense(const Eigen::MatrixXd& regressors, const Eigen::MatrixXd& changes,
+                 std::mt19937_64* rng, const std::function<void()>& check) {
+  const Eigen::Index D = regressors.rows(), N = regressors.cols();
+  DenseGp gp;
+  gp.input_mean = regressors.rowwise().mean();
+  gp.input_spread = spreadOf(regressors);
+  gp.output_mean = changes.rowwise().mean();
+  const Eigen::MatrixXd inputs =
+      gp.input_spread.cwiseInverse().asDiagonal() * (regressors.colwise() - gp.input_mean);
+  gp.outputs = changes.colwise() - gp.output_mean;
+  Eigen::MatrixXd gram = inputs * inputs.transpose();
+  gram.diagonal().array() += kRidge * static_cast<double>(N);
+  gp.slope = gram.llt().solve(inputs * gp.outputs.transpose()).transpose();
+  gp.outputs -= gp.slope * inputs;
+  gp.output_spread = spreadOf(gp.outputs);
+  gp.outputs = gp.output_spread.cwiseInverse().asDiagonal() * gp.outputs;
+
+  std::vector<Eigen::Index> drawn = shuffled(N, rng);
+  drawn.resize(std::min(N, kMaxLikelihoodSamples));
+  Eigen::VectorXd start(D + 2);
+  start.head(D).setConstant(0.5 * std::log(static_cast<double>(D)));
+  start.tail(2) << 0.0, std::log(kInitialNoise);
+  MinimiseOptions options;
+  options.max_iterations = kMaxIterations;
+  options.function_tolerance = 1e-5;
+  options.on_iteration = [&check](const Minimum&) {
+    check();
+    return true;
+  };
+  const Minimum minimum =
+      minimise(negativeLogLikelihood(columnsOf(inputs, drawn), columnsOf(gp.outputs, drawn)), start,
+               options);
+  gp.p = minimum.x;
+  const auto count = static_cast<double>(drawn.size());
+  const auto num_params = static_cast<double>(gp.p.size() + gp.slope.size());
+  gp.criterion = minimum.cost + count * gp.output_spread.array().log().sum() +
+                 0.5 * num_params * std::log(count * static_cast<double>(changes.rows()));
+  return gp;
+}
+
 }  // namespace
 
 Transitions transitionsOf(const PredictionModel<double>& f, const Eigen::MatrixXd& Z,
@@ -148,68 +200,73 @@ DifferentiableFunction negativeLogLikelihood(const Eigen::MatrixXd& inputs,
   };
 }
 
+int selectOrder(const Transitions& longest, Eigen::Index num_rows, int min_order,
+                std::mt19937_64* rng, const std::function<void()>& check) {
+  const std::mt19937_64 same = *rng;  // all orders explain the same transitions
+  int best_order = min_order;
+  double least = std::numeric_limits<double>::infinity();
+  for (int order = min_order; order * num_rows <= longest.regressors.rows(); ++order) {
+    *rng = same;
+    const DenseGp gp =
+        fitDense(longest.regressors.topRows(order * num_rows), longest.changes, rng, check);
+    if (!(gp.criterion < least)) continue;
+    least = gp.criterion;
+    best_order = order;
+  }
+  return best_order;
+}
+
 Eigen::VectorXd fitGp(const Transitions& transitions, std::mt19937_64* rng,
                       const std::function<void()>& check) {
-  const Eigen::Index D = transitions.regressors.rows(), N = transitions.regressors.cols();
-  if (N == 0) {
+  if (transitions.regressors.cols() == 0) {
     throw std::invalid_argument(
-        "model/predictor gp needs segments with more than model/order "
-        "samples: record longer episodes, or reduce model/order");
+        "model/predictor gp needs segments with more than model/order samples: record longer "
+        "episodes, or reduce model/order");
   }
-  const Eigen::VectorXd input_mean = transitions.regressors.rowwise().mean();
-  const Eigen::VectorXd input_spread = spreadOf(transitions.regressors);
-  const Eigen::MatrixXd inputs =
-      input_spread.cwiseInverse().asDiagonal() * (transitions.regressors.colwise() - input_mean);
-  // The linear mean function: ridge regression, whose penalty leaves the mean of the outputs alone.
-  const Eigen::VectorXd output_mean = transitions.changes.rowwise().mean();
-  Eigen::MatrixXd outputs = transitions.changes.colwise() - output_mean;
-  Eigen::MatrixXd gram = inputs * inputs.transpose();
-  gram.diagonal().array() += kRidge * static_cast<double>(N);
-  const Eigen::MatrixXd slope = gram.llt().solve(inputs * outputs.transpose()).transpose();
-  outputs -= slope * inputs;
-  const Eigen::VectorXd output_spread = spreadOf(outputs);
-  outputs = output_spread.cwiseInverse().asDiagonal() * outputs;
-
-  std::vector<Eigen::Index> drawn = shuffled(N, rng);
-  drawn.resize(std::min(N, kMaxLikelihoodSamples));
-  Eigen::VectorXd start(D + 2);
-  start.head(D).setConstant(0.5 * std::log(static_cast<double>(D)));
-  start.tail(2) << 0.0, std::log(kInitialNoise);
-  MinimiseOptions options;
-  options.max_iterations = kMaxIterations;
-  options.function_tolerance = 1e-5;
-  options.on_iteration = [&check](const Minimum&) {
-    check();
-    return true;
-  };
-  const Eigen::VectorXd p =
-      minimise(negativeLogLikelihood(columnsOf(inputs, drawn), columnsOf(outputs, drawn)), start,
-               options)
-          .x;
-
-  const double variance = std::exp(2.0 * p[D]), noise = std::exp(2.0 * p[D + 1]) + kJitter;
+  const DenseGp gp = fitDense(transitions.regressors, transitions.changes, rng, check);
+  const Eigen::Index D = transitions.regressors.rows();
+  const double variance = std::exp(2.0 * gp.p[D]), noise = std::exp(2.0 * gp.p[D + 1]) + kJitter;
   const Eigen::VectorXd inverse_scales =
-      (-p.head(D)).array().exp() / input_spread.array();  // of regressors as they are
+      (-gp.p.head(D)).array().exp() / gp.input_spread.array();  // of regressors as they are
   const Eigen::MatrixXd A = inverse_scales.asDiagonal() * transitions.regressors;
   const PivotedCholesky cholesky = decompose(A, variance, kUnexplained * noise);
   const Eigen::MatrixXd& L = cholesky.L;
   Eigen::MatrixXd normal = L.transpose() * L;
   normal.diagonal().array() += noise;
-  Eigen::MatrixXd weights = normal.llt().solve(L.transpose() * outputs.transpose());
+  Eigen::MatrixXd weights = normal.llt().solve(L.transpose() * gp.outputs.transpose());
   const Eigen::MatrixXd pivot_rows = columnsOf(L.transpose(), cholesky.pivots);  // upper triangle
   pivot_rows.triangularView<Eigen::Upper>().solveInPlace(weights);
 
-  const Eigen::MatrixXd scaled_slope = slope * input_spread.cwiseInverse().asDiagonal();
-  const Eigen::VectorXd bias = output_mean - scaled_slope * input_mean;
+  const Eigen::MatrixXd slope = gp.slope * gp.input_spread.cwiseInverse().asDiagonal();
+  const Eigen::VectorXd bias = gp.output_mean - slope * gp.input_mean;
   const Eigen::MatrixXd centres = columnsOf(A, cholesky.pivots);
   const Eigen::MatrixXd scaled_weights =
-      variance * output_spread.asDiagonal() * weights.transpose();
+      variance * gp.output_spread.asDiagonal() * weights.transpose();
   const auto flat = [](const Eigen::MatrixXd& matrix) {
     return Eigen::Map<const Eigen::VectorXd>(matrix.data(), matrix.size());
   };
   Eigen::VectorXd theta(D + slope.size() + bias.size() + centres.size() + scaled_weights.size());
-  theta << inverse_scales, flat(scaled_slope), bias, flat(centres), flat(scaled_weights);
+  theta << inverse_scales, flat(slope), bias, flat(centres), flat(scaled_weights);
   return theta;
+}
+
+void replaceByGp(const Eigen::MatrixXd& Z, const DataSet& data, std::mt19937_64* rng,
+                 const std::function<void()>& check, ModelOptions* model, Eigen::VectorXd* theta) {
+  const int motors = data.torqueDim();
+  ModelOptions longest = *model;
+  for (longest.order += kMaxFurtherSamples; longest.order > model->order; --longest.order) {
+    const Transitions transitions =
+        transitionsOf(PredictionModel<double>(longest, motors), Z, data);
+    if (transitions.changes.cols() == 0) continue;  // all segments are shorter
+    model->order = selectOrder(transitions, model->feature_dim + motors, model->order, rng, check);
+    break;
+  }
+  const Eigen::VectorXd theta_p =
+      fitGp(transitionsOf(PredictionModel<double>(*model, motors), Z, data), rng, check);
+  const Eigen::Index num_others = Networks<double>(*model, motors).numOfAutoEncoder();
+  const Eigen::VectorXd auto_encoder = theta->head(num_others);
+  theta->resize(num_others + theta_p.size());
+  *theta << auto_encoder, theta_p;
 }
 
 }  // namespace ddm

@@ -37,6 +37,17 @@ Transitions transitionsOf(const PredictionModel<double>& f, const Eigen::MatrixX
 DifferentiableFunction negativeLogLikelihood(const Eigen::MatrixXd& inputs,
                                              const Eigen::MatrixXd& outputs);
 
+/// Selects the order of f by the marginal likelihood of the same transitions, with a penalty for
+/// each parameter (Bayesian information criterion). If the images of the camera are d samples late,
+/// this finds order + d, because f then needs torques that are d samples older.
+/// @param longest    transitions of the largest order; their first rows are those of lower orders
+/// @param num_rows   rows of each sample in the regressor: feature_dim + torque_dim
+/// @param min_order  smallest order
+/// @param rng        draws the transitions
+/// @param check      called after each iteration; may throw to cancel the fit
+int selectOrder(const Transitions& longest, Eigen::Index num_rows, int min_order,
+                std::mt19937_64* rng, const std::function<void()>& check);
+
 /// Fits a sparse Gaussian process with a linear mean function, which ridge regression computes
 /// first. The hyper-parameters of the remaining errors maximise the marginal likelihood of at most
 /// 400 transitions, which are drawn at random. A pivoted Cholesky decomposition of the kernel
@@ -50,5 +61,16 @@ DifferentiableFunction negativeLogLikelihood(const Eigen::MatrixXd& inputs,
 /// @throws std::invalid_argument if there are no transitions
 Eigen::VectorXd fitGp(const Transitions& transitions, std::mt19937_64* rng,
                       const std::function<void()>& check);
+
+/// Replaces the network in f by a Gaussian process that is fitted to the features of all samples
+/// (model/predictor gp). Deviation: the paper keeps the network f that it trains together with the
+/// features. The Gaussian process predicts the same features with about half the error, for few and
+/// for many samples.
+/// @param Z      features of all samples                                 [feature_dim x >= N]
+/// @param check  called after each iteration; may throw to cancel the fit
+/// @param model  in and out: model/order may increase, see selectOrder()
+/// @param theta  in: parameters of the networks; out: of the auto-encoder and the Gaussian process
+void replaceByGp(const Eigen::MatrixXd& Z, const DataSet& data, std::mt19937_64* rng,
+                 const std::function<void()>& check, ModelOptions* model, Eigen::VectorXd* theta);
 
 }  // namespace ddm

@@ -39,24 +39,6 @@ double maxIterations(const Schedule& schedule, std::size_t num_restarts) {
          (schedule.finish ? schedule.finish->max_iterations : 0);
 }
 
-/// Fits a Gaussian process to the features of all samples (model/predictor gp). Deviation: the paper
-/// keeps the network f that it trains together with the features. The Gaussian process predicts the
-/// same features with about half the error, for few and for many samples.
-/// @param theta  parameters of the networks                               [P]
-/// @param check  throws Cancelled if the training was cancelled
-/// @return       parameters of the auto-encoder and of the Gaussian process
-Eigen::VectorXd withGp(const ModelOptions& model, const Eigen::VectorXd& theta,
-                       const Eigen::MatrixXd& Z, const DataSet& data, const TrialId& id,
-                       const std::function<void()>& check) {
-  const Networks<double> networks(model, data.torqueDim());
-  std::mt19937_64 rng = randomStream(id, StreamRole::kGpSamples);
-  const Eigen::VectorXd theta_p =
-      fitGp(transitionsOf(networks.prediction_model, Z, data), &rng, check);
-  Eigen::VectorXd out(networks.numOfAutoEncoder() + theta_p.size());
-  out << theta.head(networks.numOfAutoEncoder()), theta_p;
-  return out;
-}
-
 /// Adds the statistics of the best restart to the origin of a model.
 ModelInfo infoOf(const Restart& best, Problem* problem, const DataSet& data, double squared_scale,
                  ModelInfo info) {
@@ -65,8 +47,6 @@ ModelInfo infoOf(const Restart& best, Problem* problem, const DataSet& data, dou
   info.v_r = squared_scale * value.v_r;
   info.v_p = squared_scale * value.v_p;
   info.feature_spread = problem->objective.featureSpread();
-  info.support_states =
-      supportStates(problem->objective.features(), data, best.model.memory(), kMaxSupportStates);
   return info;
 }
 
@@ -119,17 +99,18 @@ TrainingResult trainUnlessCancelled(const DataSet& data, const ModelOptions& mod
     }
     Problem problem(best.model, scores);
     const double final_cost = problem.cost(best.theta, schedule.terms());
-    const ModelInfo trained = infoOf(best, &problem, data, squared_scale, info);
+    ModelInfo trained = infoOf(best, &problem, data, squared_scale, info);
     if (std::isfinite(trained.v_r + trained.v_p)) {
-      const Eigen::MatrixXd Z = problem.objective.features().cast<double>();
-      const Eigen::VectorXd theta =
-          model.predictor == "gp"
-              ? withGp(best.model, best.theta, Z, data, {info.seed, info.trial}, check)
-              : best.theta;
+      const Eigen::MatrixXf Z = problem.objective.features();
+      if (model.predictor == "gp") {
+        std::mt19937_64 draw = randomStream({info.seed, info.trial}, StreamRole::kGpSamples);
+        replaceByGp(Z.cast<double>(), data, &draw, check, &best.model, &best.theta);
+      }
+      trained.support_states = supportStates(Z, data, best.model.memory(), kMaxSupportStates);
       result.initial_cost = best.initial_cost;
       result.final_cost = final_cost;
-      result.model.emplace(best.model, data.imageSize(), data.torqueDim(), pca, theta, data.goal(),
-                           trained);
+      result.model.emplace(best.model, data.imageSize(), data.torqueDim(), pca, best.theta,
+                           data.goal(), trained);
     } else {
       std::ostringstream text;
       text << "the errors of the model must be finite, got V_R " << trained.v_r << " and V_P "

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -108,6 +109,32 @@ TEST(FitGp, TakesAnInputThatNeverChanges) {
   Transitions constant = exampleOf(50, 1);
   constant.regressors.row(2).setConstant(7.0);
   EXPECT_TRUE(fit(constant).allFinite());
+}
+
+/// A rate that a torque drives after `delay` samples. One feature, three samples in the regressor.
+Transitions lateBy(int delay, Eigen::Index count) {
+  const Eigen::MatrixXd u = randomMatrix(1, count + 4, 1);
+  Eigen::MatrixXd z = Eigen::MatrixXd::Zero(1, count + 4);
+  for (Eigen::Index t = 3; t + 1 < z.cols(); ++t) {
+    z(0, t + 1) = z(0, t) + 0.5 * (z(0, t) - z(0, t - 1)) + std::sin(u(0, t - delay));
+  }
+  Transitions out{Eigen::MatrixXd(6, count), Eigen::MatrixXd(1, count)};
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Eigen::Index t = i + 3;
+    out.regressors.col(i) << z(0, t), u(0, t), z(0, t) - z(0, t - 1), u(0, t - 1),
+        z(0, t - 1) - z(0, t - 2), u(0, t - 2);
+    out.changes(0, i) = z(0, t + 1) - z(0, t);
+  }
+  out.changes += 0.01 * randomMatrix(1, count, 2);
+  return out;
+}
+
+TEST(SelectOrder, FindsHowManySamplesTheImagesAreLate) {
+  for (int delay = 0; delay <= 2; ++delay) {
+    std::mt19937_64 rng(1);
+    const int order = selectOrder(lateBy(delay, 100), /*num_rows=*/2, /*min_order=*/2, &rng, [] {});
+    EXPECT_EQ(order, std::max(2, delay + 1)) << "delay " << delay;
+  }
 }
 
 TEST(Transitions, StayWithinSegments) {
