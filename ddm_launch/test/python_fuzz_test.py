@@ -21,7 +21,7 @@ BAD = [None, True, 3, -1, 2 ** 70, 0.5, float("nan"), float("-inf"), "", "x", "1
        np.zeros((51, 51)), np.zeros((51, 51), np.uint16), np.zeros((51, 51), bool), np.zeros((0, 51), np.uint8),
        np.zeros((51, 51, 4), np.uint8), np.zeros((1, 1), np.uint8), np.zeros((1, 20000), np.uint8), np.zeros((12, 0, 3), np.uint8),
        np.zeros((12, 51, 51), np.uint8)[::-1, ::2, ::3], np.zeros((2, 1), np.longdouble), np.zeros((1,) * 20), np.zeros((3, 3, 51, 51), np.uint8)]
-OTHER_NAMES = r"episode 0|model/order|cannot (read|write) |:1: "  # the last two follow or precede a path
+OTHER_NAMES = r"episode 0|model/order|cannot (read|write) |:\d+: "  # the last two follow or precede a path
 ALLOWED = (TypeError, ValueError, OSError, RuntimeError)
 
 
