@@ -95,7 +95,7 @@ TEST(FitGp, IsLinearFarFromAllSamples) {
 TEST(FitGp, OneDrawGivesOneResult) {
   const Transitions many = exampleOf(500, 1);
   EXPECT_EQ(fit(many, 1), fit(many, 1));
-  EXPECT_NE(fit(many, 1), fit(many, 2));
+  EXPECT_NE(fit(many, 1).head(3), fit(many, 2).head(3)) << "1 / l";
 }
 
 TEST(FitGp, RefusesNoTransitionsAndStopsWhenItIsCancelled) {
