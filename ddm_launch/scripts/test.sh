@@ -217,6 +217,7 @@ start_debug_build() {
 finish_debug_build() {
   local build=$debug_build
   say "Debug build with AddressSanitizer into $DDM_WS/debug/devel"
+  tail --pid="$build" -n 1 -f "$DDM_WS/debug/build.log"  # shows progress
   debug_build=''  # the process id can belong to another process after the build has ended
   wait "$build" || {
     cat "$DDM_WS/debug/build.log"

@@ -26,8 +26,8 @@ Transitions transitionsOf(const PredictionModel<double>& f, const Eigen::MatrixX
                           const DataSet& data);
 
 /// Negative logarithm of the marginal likelihood of a Gaussian process with one kernel for all
-/// outputs (Rasmussen and Williams, 2006, eq. 2.30), plus a weak prior that keeps hyper-parameters
-/// finite which the data leave open:
+/// outputs (Rasmussen and Williams, 2006, eq. 2.30), up to a constant, plus a weak prior that keeps
+/// those hyper-parameters finite which the data do not determine:
 ///
 ///   k(x, x') = s^2 exp(-sum_d (x_d - x'_d)^2 / (2 l_d^2)) + sigma^2 delta(x, x')
 ///
@@ -39,7 +39,7 @@ DifferentiableFunction negativeLogLikelihood(const Eigen::MatrixXd& inputs,
 
 /// Selects the order of f by the marginal likelihood of the same transitions, with a penalty for
 /// each parameter (Bayesian information criterion). If the images of the camera are d samples late,
-/// this finds order + d, because f then needs torques that are d samples older.
+/// the result is usually d + 1 or more, because f then needs torques that are d samples older.
 /// @param longest    transitions of the largest order; their first rows are those of lower orders
 /// @param num_rows   rows of each sample in the regressor: feature_dim + torque_dim
 /// @param min_order  smallest order
@@ -64,8 +64,9 @@ Eigen::VectorXd fitGp(const Transitions& transitions, std::mt19937_64* rng,
 
 /// Replaces the network in f by a Gaussian process that is fitted to the features of all samples
 /// (model/predictor gp). Deviation: the paper keeps the network f that it trains together with the
-/// features. The Gaussian process predicts the same features with about half the error, for few and
-/// for many samples.
+/// features. On held-out trials of the pendulum, two links and the cart-pole, the Gaussian process
+/// predicts the same features with half to four fifths of the network's error, for few and for many
+/// samples.
 /// @param Z      features of all samples                                 [feature_dim x >= N]
 /// @param check  called after each iteration; may throw to cancel the fit
 /// @param model  in and out: model/order may increase, see selectOrder()

@@ -93,18 +93,26 @@ TrainingResult trainUnlessCancelled(const DataSet& data, const ModelOptions& mod
       *std::min_element(restarts.begin(), restarts.end(),
                         [](const Restart& a, const Restart& b) { return a.error < b.error; });
   TrainingResult result;
+  if (std::isfinite(best.error) && schedule.finish) {
+    minimiseFinish(*schedule.finish, training, scores, longer_than, &progress, &best);
+  }
+  for (const Restart& restart : restarts) {
+    result.iterations += restart.iterations;
+    result.evaluations += restart.evaluations;
+  }
   if (std::isfinite(best.error)) {
-    if (schedule.finish) {
-      minimiseFinish(*schedule.finish, training, scores, longer_than, &progress, &best);
-    }
     Problem problem(best.model, scores);
     const double final_cost = problem.cost(best.theta, schedule.terms());
     ModelInfo trained = infoOf(best, &problem, data, squared_scale, info);
     if (std::isfinite(trained.v_r + trained.v_p)) {
       const Eigen::MatrixXf Z = problem.objective.features();
       if (model.predictor == "gp") {
+        const TrainingProgress end{result.iterations, trained.v_r, trained.v_p, 0.0, 1.0};
+        const auto report = [&] {
+          if (callback && !callback(end)) throw Cancelled();
+        };
         std::mt19937_64 draw = randomStream({info.seed, info.trial}, StreamRole::kGpSamples);
-        replaceByGp(Z.cast<double>(), data, &draw, check, &best.model, &best.theta);
+        replaceByGp(Z.cast<double>(), data, &draw, report, &best.model, &best.theta);
       }
       trained.support_states = supportStates(Z, data, best.model.memory(), kMaxSupportStates);
       result.initial_cost = best.initial_cost;
@@ -117,10 +125,6 @@ TrainingResult trainUnlessCancelled(const DataSet& data, const ModelOptions& mod
            << trained.v_p << ": check the bags, or leave the block training at its defaults";
       best.message = text.str();
     }
-  }
-  for (const Restart& restart : restarts) {
-    result.iterations += restart.iterations;
-    result.evaluations += restart.evaluations;
   }
   result.message = best.message;
   return result;

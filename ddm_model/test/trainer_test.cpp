@@ -251,6 +251,30 @@ TEST_F(Trainer, TellsItsProgress) {
   EXPECT_GT(told.back().gradient_norm, 0.0);
 }
 
+TEST_F(Trainer, ReportsAndStopsTheFitOfAGaussianProcessToo) {
+  model_.residual = model_.increments = true;
+  const int iterations = run().iterations;
+  model_.predictor = "gp";
+  std::vector<TrainingProgress> told;
+  run([&told](const TrainingProgress& progress) {
+    if (progress.v_r > 0.0) told.push_back(progress);  // not while there is no theta yet
+    return true;
+  });
+  ASSERT_GT(told.back().fraction_done, 0.99);
+  for (size_t i = 1; i < told.size(); ++i) {
+    EXPECT_GE(told[i].fraction_done, told[i - 1].fraction_done);
+    EXPECT_GE(told[i].iteration, told[i - 1].iteration);
+  }
+  EXPECT_EQ(told.back().iteration, iterations);
+  bool was_last = false;
+  const TrainingResult stopped = run([&](const TrainingProgress& progress) {
+    was_last = progress.fraction_done == 1.0 && progress.iteration == iterations &&
+               progress.gradient_norm == 0.0;  // the network is trained
+    return !was_last;
+  });
+  EXPECT_TRUE(was_last && stopped.cancelled && !stopped.model);
+}
+
 TEST_F(Trainer, StopsBeforeItsPrincipalComponentsAreThere) {
   const TrainingResult result = run([](const TrainingProgress&) { return false; });
   EXPECT_TRUE(result.cancelled);

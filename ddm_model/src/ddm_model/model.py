@@ -151,17 +151,16 @@ class Model:
         if options["predictor"] == "network":
             networks.append(("f", [num_inputs, *options["predictor_widths"], dim]))
         needed = sum((inputs + 1) * outputs for _, widths in networks for inputs, outputs in zip(widths, widths[1:]))
-        gp = np.empty(0)
-        if options["predictor"] == "gp":
-            theta, gp = theta[:needed], theta[needed:]
+        theta, gp = np.split(theta, [needed])
         sizes = np.cumsum([num_inputs, num_inputs * dim, dim])  # 1 / l, slope and bias
         num_centres, rest = divmod(gp.size - sizes[-1], num_inputs + dim)
-        if theta.size != needed or (gp.size > 0 and (num_centres < 1 or rest > 0)):
+        fits = num_centres >= 1 and rest == 0 if options["predictor"] == "gp" else gp.size == 0
+        if theta.size != needed or not fits:
             raise ModelFileError("has %d parameters, which do not fit its networks: train it again" % (theta.size + gp.size))
         for name, widths in networks:
             layers, theta = _layers(theta, widths, name)
             arrays.update(layers)
-        if gp.size > 0:
+        if options["predictor"] == "gp":
             inverse_scales, slope, bias, centres, weights = np.split(gp, [*sizes, sizes[-1] + num_inputs * num_centres])
             arrays.update(f_inverse_scales=inverse_scales, f_slope=slope.reshape(num_inputs, dim), f_bias=bias,
                           f_centres=centres.reshape(num_centres, num_inputs), f_weights=weights.reshape(num_centres, dim))
