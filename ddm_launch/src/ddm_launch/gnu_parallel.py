@@ -5,12 +5,38 @@ import os
 import shlex
 import signal
 import subprocess
+import sys
 
 from ddm_launch.command import Failure
 from ddm_launch.slurm import job_file, remembered
 from ddm_launch.sweep_folder import DIE_WITH_PARENT
 
 POLL_S = 0.5
+ANSWER_S = 20
+PARALLEL = DIE_WITH_PARENT + ["parallel", "--plain", "--will-cite"]
+
+
+def environment_of_parallel():
+    return dict(os.environ, PARALLEL_SHELL="/bin/bash",
+                PARALLEL_SSH=" ".join(DIE_WITH_PARENT + [os.environ.get("PARALLEL_SSH", "ssh")]))
+
+
+def hosts_that_answer(path):
+    """The lines of a file of ssh hosts whose hosts answer within ANSWER_S. Names the other hosts on stderr. Raises
+    Failure if no host answers. GNU parallel's own --filter-hosts is not used, because it stops with an internal error
+    at every host whose login shell prints something."""
+    with open(path, errors="replace") as stream:
+        hosts = [line.strip() for line in stream if line.split("#")[0].strip()]
+    checks = [subprocess.Popen(PARALLEL + ["--sshlogin", host, "--jobs", "1", "--timeout", str(ANSWER_S), "true", ":::", ""],
+                               stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                               env=environment_of_parallel()) for host in hosts]
+    answers = [host for host, check in zip(hosts, checks) if check.wait() == 0]
+    if not answers:
+        raise Failure("none of the hosts in %s answers: %s. Try: ssh HOST true" % (path, ", ".join(hosts) or "it names none"))
+    if len(answers) < len(hosts):
+        print("sweep: these hosts do not answer, and are left out: %s" % ", ".join(h for h in hosts if h not in answers),
+              file=sys.stderr)
+    return answers
 
 
 class GnuParallel:
@@ -20,8 +46,7 @@ class GnuParallel:
         """jobs: seeds at a time; None: one per core. hosts: file of ssh hosts; None: this machine. Raises Failure if
         GNU parallel is not installed."""
         self.options = ["--jobs", str(jobs)] if jobs is not None else []
-        if hosts is not None:
-            self.options += ["--sshloginfile", os.path.abspath(hosts), "--filter-hosts"]
+        self._hosts = hosts
         try:
             version = subprocess.check_output(["parallel", "--plain", "--will-cite", "--version"], stdin=subprocess.DEVNULL,
                                               stderr=subprocess.DEVNULL, universal_newlines=True)
@@ -38,15 +63,15 @@ class GnuParallel:
 
     def run(self, folder, seeds, tick):
         """Runs the seeds and returns when all have ended, whether they succeed or fail. Calls tick() every POLL_S
-        seconds.
+        seconds. Raises Failure if hosts are given and none answers.
 
         If tick() or a signal handler raises an exception, the method ends all seeds and raises the exception again.
         """
-        command = DIE_WITH_PARENT + ["parallel", "--plain", "--will-cite", "--joblog", folder.joblog] + self.options
+        hosts = hosts_that_answer(self._hosts) if self._hosts is not None else []
+        command = PARALLEL + ["--joblog", folder.joblog] + self.options
+        command += [word for host in hosts for word in ("--sshlogin", host)]
         command += [" ".join(DIE_WITH_PARENT + ["bash", shlex.quote(folder.script), "{}"]), ":::"] + [str(seed) for seed in seeds]
-        environment = dict(os.environ, PARALLEL_SHELL="/bin/bash",
-                           PARALLEL_SSH=" ".join(DIE_WITH_PARENT + [os.environ.get("PARALLEL_SSH", "ssh")]))
-        process = subprocess.Popen(command, stdin=subprocess.DEVNULL, env=environment)
+        process = subprocess.Popen(command, stdin=subprocess.DEVNULL, env=environment_of_parallel())
         try:
             while process.poll() is None:
                 with contextlib.suppress(subprocess.TimeoutExpired):

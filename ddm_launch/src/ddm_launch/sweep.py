@@ -30,7 +30,7 @@ in DIR:
   seed, and logs/ what it said. `bash run_seed.sh SEED` runs one seed by hand.
 
 hosts (--hosts FILE):
-  GNU parallel's --sshloginfile: one ssh host a line, ':' is this machine. Hosts that do not answer are left out. Each
+  GNU parallel's --sshloginfile: one ssh host a line, ':' is this machine. Hosts that do not answer in 20 s are left out. Each
   needs GNU parallel, a login without password, and this workspace, DIR and the folder that the sweep is called from
   under the same paths (a shared file system): the workspace's setup.bash is sourced there, files are not copied. The
   ssh command is $PARALLEL_SSH.
