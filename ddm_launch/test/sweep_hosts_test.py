@@ -1,5 +1,4 @@
-# Sweeps over ssh hosts, simulated on this machine: seeds are distributed, hosts may fail, login shells may print
-# something, and all processes end.
+# Sweeps over ssh hosts, simulated on this machine: seeds are distributed, hosts may fail, and all processes end.
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 import socket
@@ -21,6 +20,7 @@ StrictModes no
 UsePAM no
 PasswordAuthentication no
 SetEnv PATH={folder}/bin:/usr/bin:/bin
+# A login shell may print something.
 ForceCommand echo Welcome; echo Welcome >&2; eval "$SSH_ORIGINAL_COMMAND"
 """
 SSH_CONFIG = """\
