@@ -15,13 +15,16 @@ namespace ddm {
 namespace {
 
 constexpr Eigen::Index kMaxLikelihoodSamples = 400;  // the time grows with the cube
-constexpr Eigen::Index kMaxCentres = 500;            // the time of a plan is proportional
+constexpr Eigen::Index kCentresForOutliers = 300;    // enough to find outliers
 constexpr double kUnexplained = 0.1;  // variance without the centres / variance of the noise
 constexpr int kMaxIterations = 40;
 constexpr double kInitialNoise = 0.3;  // sigma, if the outputs have standard deviation 1
 constexpr double kJitter = 1e-8;       // added to the variance of the noise
 constexpr int kMaxFurtherSamples = 2;  // by which f may look back further than model/order
 constexpr double kRidge = 1e-3;        // of the linear mean, per sample
+constexpr int kOutlierRounds = 2;
+constexpr double kOutlier = 12.0;               // squared error of an outlier / median
+constexpr double kSmallestError = 0.03 * 0.03;  // smaller squared errors count as this
 
 // Weights of the prior: each hyper-parameter p adds w (p - p_0)^2, which is small next to the
 // likelihood of a hundred samples.
@@ -71,8 +74,9 @@ struct PivotedCholesky {
 /// @param A          inputs / l          [D x N]
 /// @param variance   s^2
 /// @param tolerance  largest variance that is not explained
-PivotedCholesky decompose(const Eigen::MatrixXd& A, double variance, double tolerance) {
-  const Eigen::Index max_rank = std::min(A.cols(), kMaxCentres);
+/// @param max_rank   cap on M, at most N
+PivotedCholesky decompose(const Eigen::MatrixXd& A, double variance, double tolerance,
+                          Eigen::Index max_rank) {
   PivotedCholesky out;
   out.L.resize(A.cols(), max_rank);
   Eigen::VectorXd rest = Eigen::VectorXd::Constant(A.cols(), variance);
@@ -137,8 +141,9 @@ DenseGp fitDense(const Eigen::MatrixXd& regressors, const Eigen::MatrixXd& chang
   gp.p = minimum.x;
   const auto count = static_cast<double>(drawn.size());
   const auto num_params = static_cast<double>(gp.p.size() + gp.slope.size());
-  gp.criterion = minimum.cost + count * gp.output_spread.array().log().sum() +
-                 0.5 * num_params * std::log(count * static_cast<double>(changes.rows()));
+  const auto all = static_cast<double>(N);
+  gp.criterion = all / count * minimum.cost + all * gp.output_spread.array().log().sum() +
+                 0.5 * num_params * std::log(all * static_cast<double>(changes.rows()));
   return gp;
 }
 
@@ -217,7 +222,7 @@ int selectOrder(const Transitions& longest, Eigen::Index num_rows, int min_order
 }
 
 Eigen::VectorXd fitGp(const Transitions& transitions, std::mt19937_64* rng,
-                      const std::function<void()>& check) {
+                      const std::function<void()>& check, Eigen::Index max_centres) {
   if (transitions.regressors.cols() == 0) {
     throw std::invalid_argument(
         "model/predictor gp needs segments with more than model/order samples: record longer "
@@ -229,7 +234,8 @@ Eigen::VectorXd fitGp(const Transitions& transitions, std::mt19937_64* rng,
   const Eigen::VectorXd inverse_scales =
       (-gp.p.head(D)).array().exp() / gp.input_spread.array();  // of regressors as they are
   const Eigen::MatrixXd A = inverse_scales.asDiagonal() * transitions.regressors;
-  const PivotedCholesky cholesky = decompose(A, variance, kUnexplained * noise);
+  const PivotedCholesky cholesky =
+      decompose(A, variance, kUnexplained * noise, std::min(A.cols(), max_centres));
   const Eigen::MatrixXd& L = cholesky.L;
   Eigen::MatrixXd normal = L.transpose() * L;
   normal.diagonal().array() += noise;
@@ -250,19 +256,50 @@ Eigen::VectorXd fitGp(const Transitions& transitions, std::mt19937_64* rng,
   return theta;
 }
 
+Transitions withoutOutliers(const Transitions& transitions, std::mt19937_64* rng,
+                            const std::function<void()>& check) {
+  const auto D = static_cast<int>(transitions.regressors.rows());
+  const auto E = static_cast<int>(transitions.changes.rows());
+  const Eigen::MatrixXd units = spreadOf(transitions.changes).cwiseInverse().asDiagonal();
+  Transitions kept = transitions;
+  for (int round = 0; round < kOutlierRounds; ++round) {
+    const Eigen::VectorXd theta = fitGp(kept, rng, check, kCentresForOutliers);
+    const GpMean<double> f = GpMean<double>::ofSize(D, E, theta.size());
+    GpMean<double>::Tape tape;
+    f.forward(theta.data(), transitions.regressors, &tape);
+    const Eigen::VectorXd errors =
+        (units * (transitions.changes - tape.output())).colwise().squaredNorm() / E;
+    Eigen::VectorXd sorted = errors;
+    double* median = sorted.data() + sorted.size() / 2;
+    std::nth_element(sorted.data(), median, sorted.data() + sorted.size());
+    const double limit = kOutlier * std::max(*median, kSmallestError);
+    std::vector<Eigen::Index> indices;
+    for (Eigen::Index i = 0; i < errors.size(); ++i) {
+      if (errors[i] <= limit) indices.push_back(i);
+    }
+    kept = {columnsOf(transitions.regressors, indices), columnsOf(transitions.changes, indices)};
+  }
+  return kept;
+}
+
 void replaceByGp(const Eigen::MatrixXd& Z, const DataSet& data, std::mt19937_64* rng,
                  const std::function<void()>& check, ModelOptions* model, Eigen::VectorXd* theta) {
   const int motors = data.torqueDim();
+  const int num_rows = model->feature_dim + motors;  // of each sample in the regressor
   ModelOptions longest = *model;
-  for (longest.order += kMaxFurtherSamples; longest.order > model->order; --longest.order) {
-    const Transitions transitions =
-        transitionsOf(PredictionModel<double>(longest, motors), Z, data);
-    if (transitions.changes.cols() == 0) continue;  // all segments are shorter
-    model->order = selectOrder(transitions, model->feature_dim + motors, model->order, rng, check);
-    break;
+  longest.order += kMaxFurtherSamples;
+  const auto transitionsOfOrder = [&] {
+    return transitionsOf(PredictionModel<double>(longest, motors), Z, data);
+  };
+  Transitions transitions = transitionsOfOrder();
+  while (transitions.changes.cols() == 0 && longest.order > model->order) {
+    --longest.order;  // all segments are shorter
+    transitions = transitionsOfOrder();
   }
-  const Eigen::VectorXd theta_p =
-      fitGp(transitionsOf(PredictionModel<double>(*model, motors), Z, data), rng, check);
+  transitions = withoutOutliers(transitions, rng, check);
+  model->order = selectOrder(transitions, num_rows, model->order, rng, check);
+  transitions.regressors.conservativeResize(model->order * num_rows, Eigen::NoChange);
+  const Eigen::VectorXd theta_p = fitGp(transitions, rng, check);
   const Eigen::Index num_others = Networks<double>(*model, motors).numOfAutoEncoder();
   const Eigen::VectorXd auto_encoder = theta->head(num_others);
   theta->resize(num_others + theta_p.size());

@@ -26,7 +26,7 @@ Transitions exampleOf(Eigen::Index count, unsigned seed) {
 }
 
 Eigen::MatrixXd predict(const Eigen::VectorXd& theta, const Eigen::MatrixXd& inputs) {
-  const GpMean<double> gp(3, 2, (theta.size() - 11) / 5);
+  const GpMean<double> gp = GpMean<double>::ofSize(3, 2, theta.size());
   Mlp<double>::Tape tape;
   gp.forward(theta.data(), inputs, &tape);
   return tape.output();
@@ -81,6 +81,36 @@ TEST(FitGp, AveragesOverNoiseWithFewerCentresThanSamples) {
   const Transitions test = exampleOf(200, 2);
   const Eigen::MatrixXd errors = predict(theta, test.regressors) - test.changes;
   EXPECT_LT(errors.row(0).norm() / std::sqrt(200.0), 0.2) << "the noise has 0.3";
+}
+
+TEST(FitGp, HasAtMostSoManyCentres) {
+  std::mt19937_64 rng(1);
+  const Eigen::VectorXd theta = fitGp(
+      exampleOf(200, 1), &rng, [] {}, /*max_centres=*/10);
+  EXPECT_EQ(GpMean<double>::ofSize(3, 2, theta.size()).numCentres(), 10);
+}
+
+TEST(WithoutOutliers, KeepsTheRestAsItIs) {
+  const Transitions clean = exampleOf(300, 1);
+  Transitions all = clean;
+  for (Eigen::Index i = 0; i < 300; i += 20) all.changes.col(i) += Eigen::Vector2d(4.0, -30.0);
+  std::mt19937_64 rng(1);
+  const Transitions kept = withoutOutliers(all, &rng, [] {});
+  EXPECT_GE(kept.changes.cols(), 270);
+  EXPECT_LE(kept.changes.cols(), 285) << "285 are no outliers";
+  for (Eigen::Index i = 0, j = 0; i < 300; ++i) {  // in their order
+    if (j == kept.changes.cols() || kept.regressors.col(j) != clean.regressors.col(i)) continue;
+    EXPECT_EQ(kept.changes.col(j), clean.changes.col(i)) << "transition " << i;
+    ++j;
+  }
+}
+
+TEST(WithoutOutliers, TakesSmallErrorsForRounding) {
+  Transitions exact{randomMatrix(3, 200, 1), Eigen::MatrixXd(2, 200)};
+  exact.changes << exact.regressors.row(0), exact.regressors.row(1);
+  exact.changes(0, 7) += 0.02;
+  std::mt19937_64 rng(1);
+  EXPECT_EQ(withoutOutliers(exact, &rng, [] {}).changes.cols(), 200);
 }
 
 TEST(FitGp, IsLinearFarFromAllSamples) {

@@ -27,6 +27,13 @@ class GpMean {
   GpMean(int input_dim, int output_dim, Eigen::Index num_centres)
       : input_dim_(input_dim), output_dim_(output_dim), num_centres_(num_centres) {}
 
+  /// @param num_params  numParams() of the object
+  static GpMean ofSize(int input_dim, int output_dim, Eigen::Index num_params) {
+    const GpMean linear(input_dim, output_dim, 0);
+    return GpMean(input_dim, output_dim,
+                  (num_params - linear.numParams()) / (input_dim + output_dim));
+  }
+
   Eigen::Index numCentres() const { return num_centres_; }
   /// @return number of parameters: 1 / l, S, b, all centres, all weights (column-major)
   Eigen::Index numParams() const {
