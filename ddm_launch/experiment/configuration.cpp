@@ -4,7 +4,7 @@
 
 #include <ddm_model/per_motor.h>
 #include <ddm_model/schedule.h>
-#include <ddm_mpc/cost_to_go.h>
+#include <ddm_mpc/saturating_cost.h>
 #include <ddm_sim/plant.h>
 
 #include <sstream>
@@ -58,10 +58,11 @@ void requireConsistent(const Configuration& all) {
       torques);
   require(within(all.mpc.max_torque, model.max_torque),
           "mpc/max_torque must be at most model/max_torque, which scales what f sees", torques);
-  require(all.mpc.cost != "time" || static_cast<int>(limits.size()) <= CostToGo::kMaxMotors,
-          "mpc/cost must be distance with more than " + std::to_string(CostToGo::kMaxMotors) +
-              " motors, as time compares 3^motors sets of torques",
-          "time with the " + std::to_string(limits.size()) + " of " + owner + "/max_torque");
+  require(
+      all.mpc.cost == "distance" || static_cast<int>(limits.size()) <= SaturatingCost::kMaxMotors,
+      "mpc/cost must be distance with more than " + std::to_string(SaturatingCost::kMaxMotors) +
+          " motors, as the others compare 3^motors sets of torques",
+      all.mpc.cost + " with the " + std::to_string(limits.size()) + " of " + owner + "/max_torque");
   require(all.mpc.time_budget <= (all.robot ? all.robot->dt : all.plant_info.dt),
           "mpc/time_budget must be at most " + owner + "/dt, when the next image comes",
           all.mpc.time_budget);

@@ -110,7 +110,7 @@ TEST(Configuration, ANameThatDoesNotExistIsRefusedWithThoseThatDo) {
     return throwsNaming<std::invalid_argument>([&] { read(given); }, words);
   };
   EXPECT_TRUE(refused(arguments("papier", "pendulum"),
-                      {"unknown preset 'papier'", "debug, efficient, gp, paper"}));
+                      {"unknown preset 'papier'", "debug, efficient, gp, paper, underactuated"}));
   for (const std::string name : {"nuisance/fog", "noise", "noise/noise"}) {
     EXPECT_TRUE(refused(arguments("paper", "pendulum", {name}),
                         {"'" + name + "'", "nuisance/clutter", "oracle/suite_reacher"}));

@@ -22,20 +22,6 @@ constexpr double kTolerance = 1e-3;              // the iteration ends if no V_i
 // w_0, the kernel's weight at a distance of 3 h.
 const double kUnknown = std::exp(-0.5 * 3.0 * 3.0);
 
-/// @return all combinations of the torques -max, 0 and max  [torque_dim x 3^torque_dim]
-Eigen::MatrixXd combinations(const Eigen::VectorXd& max_torque) {
-  Eigen::Index count = 1;
-  for (Eigen::Index motor = 0; motor < max_torque.size(); ++motor) count *= 3;
-  Eigen::MatrixXd torques(max_torque.size(), count);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    Eigen::Index digits = i;
-    for (Eigen::Index motor = 0; motor < max_torque.size(); ++motor, digits /= 3) {
-      torques(motor, i) = static_cast<double>(digits % 3 - 1) * max_torque[motor];
-    }
-  }
-  return torques;
-}
-
 /// @return mean distance of a point to its nearest neighbour
 double spacing(const Eigen::MatrixXd& points) {
   double sum = 0.0;
@@ -77,10 +63,7 @@ std::vector<Eigen::MatrixXd> predictions(const Ddm& model, const Eigen::MatrixXd
 }  // namespace
 
 CostToGo::CostToGo(const Ddm& model, const Eigen::VectorXd& max_torque)
-    : model_(&model), torques_(combinations(max_torque)) {
-  eigen_assert(model.info().support_states.cols() >= 2 && max_torque.size() == model.torqueDim() &&
-               max_torque.size() <= kMaxMotors);
-}
+    : model_(&model), step_cost_(model, max_torque, kWidth) {}
 
 void CostToGo::predictOutcomes() {
   const Eigen::MatrixXd X = model_->info().support_states.cast<double>();
@@ -91,15 +74,13 @@ void CostToGo::predictOutcomes() {
                                       : Eigen::MatrixXd::Zero(dim, M);
   // If nothing moves, or a state has a single feature, the states differ only in their features.
   constexpr double kNoChange = std::numeric_limits<double>::infinity();
-  spread_ = std::max((Z.colwise() - Z.rowwise().mean()).norm() / std::sqrt(M),
-                     std::numeric_limits<double>::min());
   change_spread_ = changes.isZero(0.0) ? kNoChange : changes.norm() / std::sqrt(M);
   points_.resize(2 * dim, M);
-  points_ << Z / spread_, changes / change_spread_;
+  points_ << Z / step_cost_.spread(), changes / change_spread_;
   h_ = kSmoothness * spacing(points_);
   outcomes_.resize(static_cast<size_t>(M));
-  for (Eigen::Index i = 0; i < torques_.cols(); ++i) {
-    const auto steps = predictions(*model_, X, torques_.col(i), kHoldSteps);
+  for (Eigen::Index i = 0; i < step_cost_.torques().cols(); ++i) {
+    const auto steps = predictions(*model_, X, step_cost_.torques().col(i), kHoldSteps);
     Eigen::MatrixXd path(dim, kHoldSteps);
     for (Eigen::Index state = 0; state < M; ++state) {
       for (int step = 0; step < kHoldSteps; ++step) path.col(step) = steps[step].col(state);
@@ -111,7 +92,7 @@ void CostToGo::predictOutcomes() {
 Eigen::VectorXd CostToGo::pointOf(const Eigen::Ref<const Eigen::VectorXd>& z,
                                   const Eigen::Ref<const Eigen::VectorXd>& before) const {
   Eigen::VectorXd point(2 * z.size());
-  point << z / spread_, (z - before) / change_spread_;
+  point << z / step_cost_.spread(), (z - before) / change_spread_;
   return point;
 }
 
@@ -141,12 +122,12 @@ double CostToGo::unknownValue() const { return exploring_ ? kOptimism * kWorst :
 
 void CostToGo::setGoal(const Eigen::VectorXd& z_ref, bool exploring) {
   if (outcomes_.empty()) predictOutcomes();
-  z_ref_ = z_ref;
+  step_cost_.setGoal(z_ref);
   exploring_ = exploring;
   const auto costOf = [this](const Outcome& outcome) {
     double cost = 0.0, discount = 1.0;
     for (int step = 0; step < kHoldSteps; ++step, discount *= kGamma) {
-      cost += discount * stepCost(outcome.path.col(step), nullptr);
+      cost += discount * step_cost_.evaluate(outcome.path.col(step), nullptr);
     }
     return cost;
   };
@@ -202,14 +183,6 @@ void CostToGo::iterate(const std::vector<std::vector<double>>& costs) {
   }
 }
 
-double CostToGo::stepCost(const Eigen::Ref<const Eigen::VectorXd>& z,
-                          Eigen::VectorXd* gradient) const {
-  const double sigma = kWidth * spread_;
-  const double near = std::exp(-0.5 * (z - z_ref_).squaredNorm() / (sigma * sigma));
-  if (gradient != nullptr) *gradient = (near / (sigma * sigma)) * (z - z_ref_);
-  return 1.0 - near;
-}
-
 double CostToGo::value(const Eigen::Ref<const Eigen::VectorXd>& z,
                        const Eigen::Ref<const Eigen::VectorXd>& before, Eigen::VectorXd* d_z,
                        Eigen::VectorXd* d_before) const {
@@ -222,7 +195,7 @@ double CostToGo::value(const Eigen::Ref<const Eigen::VectorXd>& z,
     const Eigen::VectorXd share = weights * (values_ - value) / (sum * h_ * h_);
     const Eigen::VectorXd d_point = points_ * share - point * share.sum();
     *d_before = -d_point.tail(z.size()) / change_spread_;
-    *d_z = d_point.head(z.size()) / spread_ - *d_before;
+    *d_z = d_point.head(z.size()) / step_cost_.spread() - *d_before;
   }
   return value;
 }

@@ -10,22 +10,31 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace ddm {
 
-DdmPlanCost::DdmPlanCost(const Ddm& model, int horizon, double control_weight,
-                         std::optional<CostToGo> cost_to_go)
+DdmPlanCost::DdmPlanCost(const Ddm& model, int horizon, double control_weight, Terms terms)
     : f_(model.predictionModel()),
       theta_p_(model.thetaP()),
       horizon_(horizon),
       control_weight_(Eigen::ArrayXd::Constant(f_.torqueDim(), control_weight)),
-      cost_to_go_(std::move(cost_to_go)),
-      roll_out_(f_) {
+      terms_(std::move(terms)),
+      roll_out_(f_),
+      search_(f_) {
   eigen_assert(horizon >= 1);
   roll_out_.reserve(/*num_targets=*/1, horizon);
   torques_.setZero(f_.torqueDim(), f_.memory() - 1 + horizon);
-  if (!cost_to_go_) return;
-  control_weight_ /= 2.0 * CostToGo::kWidth * CostToGo::kWidth * f_.maxTorque().array().square();
+  if (const SaturatingCost* saturating = saturatingCost()) {
+    const double width = saturating->width();
+    control_weight_ /= 2.0 * width * width * f_.maxTorque().array().square();
+  }
+}
+
+/// @return cost of a step; null: eq. (9)
+const SaturatingCost* DdmPlanCost::saturatingCost() const {
+  if (const auto* cost_to_go = std::get_if<CostToGo>(&terms_)) return &cost_to_go->stepCost();
+  return std::get_if<SaturatingCost>(&terms_);
 }
 
 void DdmPlanCost::setGoal(const Eigen::VectorXd& goal_feature, bool exploring) {
@@ -34,7 +43,11 @@ void DdmPlanCost::setGoal(const Eigen::VectorXd& goal_feature, bool exploring) {
   if (same_goal && exploring_ == exploring) return;
   goal_feature_ = goal_feature;
   exploring_ = exploring;
-  if (cost_to_go_) cost_to_go_->setGoal(goal_feature, exploring);
+  if (auto* cost_to_go = std::get_if<CostToGo>(&terms_)) {
+    cost_to_go->setGoal(goal_feature, exploring);
+  } else if (auto* saturating = std::get_if<SaturatingCost>(&terms_)) {
+    saturating->setGoal(goal_feature);
+  }
 }
 
 void DdmPlanCost::setProblem(const History& x, const Eigen::VectorXd& goal_feature,
@@ -61,20 +74,21 @@ Eigen::VectorXd DdmPlanCost::featureAfter(int num_steps) const {
   return roll_out_.predicted(num_steps - 1);
 }
 
-/// @param step  index of the step, from 0 on; leads to z_{step + 1}
-/// @param u     torque of the step [N m]                                         [torque_dim]
-/// @param d_z   out: derivative by z_{step + 1}; null: skip                     [feature_dim]
-/// @param d_u   out: derivative by u [1/(N m)]; null: skip                       [torque_dim]
-double DdmPlanCost::stepCost(int step, const Eigen::Ref<const Eigen::VectorXd>& u,
-                             Eigen::VectorXd* d_z, Eigen::VectorXd* d_u) const {
-  const auto z = roll_out_.predicted(step);
+/// @param z    feature to which the step leads                                  [feature_dim]
+/// @param u    torque of the step [N m]                                          [torque_dim]
+/// @param d_z  out: derivative by z; null: skip                                 [feature_dim]
+/// @param d_u  out: derivative by u [1/(N m)]; null: skip                        [torque_dim]
+double DdmPlanCost::stepCost(const Eigen::Ref<const Eigen::VectorXd>& z,
+                             const Eigen::Ref<const Eigen::VectorXd>& u, Eigen::VectorXd* d_z,
+                             Eigen::VectorXd* d_u) const {
   const double effort = (control_weight_ * u.array().square()).sum();
   if (d_u != nullptr) *d_u = 2.0 * control_weight_ * u.array();
-  if (!cost_to_go_) {  // eq. (9)
+  const SaturatingCost* saturating = saturatingCost();
+  if (saturating == nullptr) {  // eq. (9)
     if (d_z != nullptr) *d_z = 2.0 * (z - goal_feature_);
     return (z - goal_feature_).squaredNorm() + effort;
   }
-  const double near = 1.0 - cost_to_go_->stepCost(z, d_z);
+  const double near = 1.0 - saturating->evaluate(z, d_z);
   const double gentle = std::exp(-effort);
   if (d_z != nullptr) *d_z *= gentle;
   if (d_u != nullptr) *d_u *= near * gentle;
@@ -86,25 +100,26 @@ double DdmPlanCost::evaluate(const Eigen::Ref<const Eigen::MatrixXd>& U, Eigen::
   rollOut(U, horizon_);
   double cost = 0.0;
   for (int step = 0; step < horizon_; ++step) {
-    cost += stepCost(step, U.col(step), nullptr, nullptr);
+    cost += stepCost(roll_out_.predicted(step), U.col(step), nullptr, nullptr);
   }
   Eigen::VectorXd d_last, d_before;
-  if (cost_to_go_) {
-    cost += cost_to_go_->value(featureAfter(horizon_), featureAfter(horizon_ - 1),
-                               d_U == nullptr ? nullptr : &d_last, &d_before);
+  const auto* cost_to_go = std::get_if<CostToGo>(&terms_);
+  if (cost_to_go != nullptr) {
+    cost += cost_to_go->value(featureAfter(horizon_), featureAfter(horizon_ - 1),
+                              d_U == nullptr ? nullptr : &d_last, &d_before);
   }
   if (d_U == nullptr) return cost;
 
   d_torques_.setZero(torques_.rows(), torques_.cols());
   for (int step = 0; step < horizon_; ++step) roll_out_.dPredicted(step).setZero();
-  if (cost_to_go_) {
+  if (cost_to_go != nullptr) {
     roll_out_.dPredicted(horizon_ - 1) += d_last;
     if (horizon_ > 1) roll_out_.dPredicted(horizon_ - 2) += d_before;
   }
   const Eigen::Index target = f_.memory();
   const RollOut<double>::Targets targets(&target, 1);
   for (int step = horizon_ - 1; step >= 0; --step) {
-    stepCost(step, U.col(step), &d_step_, &d_torque_);
+    stepCost(roll_out_.predicted(step), U.col(step), &d_step_, &d_torque_);
     roll_out_.dPredicted(step) += d_step_;
     d_torques_.col(f_.memory() - 1 + step) += d_torque_;
     roll_out_.backward(theta_p_, targets, step, nullptr, nullptr, &d_torques_);
@@ -113,28 +128,61 @@ double DdmPlanCost::evaluate(const Eigen::Ref<const Eigen::MatrixXd>& U, Eigen::
   return cost;
 }
 
-std::optional<Eigen::MatrixXd> DdmPlanCost::proposal() {
-  if (!cost_to_go_) return std::nullopt;
-  Eigen::MatrixXd U = Eigen::MatrixXd::Zero(f_.torqueDim(), horizon_);
-  for (int begin = 0; begin < horizon_; begin += CostToGo::kHoldSteps) {
-    const int end = std::min(begin + CostToGo::kHoldSteps, horizon_);
-    double least = std::numeric_limits<double>::infinity();
-    Eigen::MatrixXd best = U;
-    for (Eigen::Index i = 0; i < cost_to_go_->torques().cols(); ++i) {
-      U.middleCols(begin, end - begin).colwise() = cost_to_go_->torques().col(i);
-      rollOut(U, end);
-      double cost = cost_to_go_->value(featureAfter(end), featureAfter(end - 1), nullptr, nullptr);
-      for (int step = begin; step < end; ++step) {
-        cost += stepCost(step, U.col(step), nullptr, nullptr);
-      }
-      if (cost < least) {
-        least = cost;
-        best = U;
-      }
+/// @return each plan, continued by each combination of torques, held from step `begin` on for
+///         `num_steps` steps
+std::vector<DdmPlanCost::HeldPlan> DdmPlanCost::continued(const std::vector<HeldPlan>& plans,
+                                                          int begin, int num_steps) {
+  const Eigen::MatrixXd& choices = saturatingCost()->torques();
+  const Eigen::Index memory = f_.memory(), length = memory + num_steps;
+  const auto count = static_cast<Eigen::Index>(plans.size()) * choices.cols();
+  std::vector<HeldPlan> out;
+  Eigen::MatrixXd Z(f_.featureDim(), count * length), U(f_.torqueDim(), count * length);
+  Eigen::Matrix<Eigen::Index, Eigen::Dynamic, 1> targets(count);
+  for (const HeldPlan& plan : plans) {
+    for (Eigen::Index choice = 0; choice < choices.cols(); ++choice) {
+      const Eigen::Index first = static_cast<Eigen::Index>(out.size()) * length;
+      targets[static_cast<Eigen::Index>(out.size())] = first + memory;
+      out.push_back(plan);
+      auto& torques = out.back().torques;
+      torques.middleCols(memory - 1 + begin, num_steps).colwise() = choices.col(choice);
+      Z.middleCols(first, memory) = plan.features;
+      U.middleCols(first, length - 1) = torques.middleCols(begin, length - 1);
     }
-    U = best;
   }
-  return U;
+  search_.forward(theta_p_, Z, U, RollOut<double>::Targets(targets.data(), count), num_steps,
+                  &offset_);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    HeldPlan& plan = out[static_cast<size_t>(i)];
+    Eigen::MatrixXd features(f_.featureDim(), length);
+    features.leftCols(memory) = plan.features;
+    for (int step = 0; step < num_steps; ++step) {
+      features.col(memory + step) = search_.predicted(step).col(i);
+      plan.cost += stepCost(search_.predicted(step).col(i),
+                            plan.torques.col(memory - 1 + begin + step), nullptr, nullptr);
+    }
+    plan.features = features.rightCols(memory);
+    plan.total = plan.cost;
+    if (const auto* cost_to_go = std::get_if<CostToGo>(&terms_)) {
+      plan.total +=
+          cost_to_go->value(features.col(length - 1), features.col(length - 2), nullptr, nullptr);
+    }
+    if (std::isnan(plan.total)) plan.total = std::numeric_limits<double>::infinity();
+  }
+  return out;
+}
+
+std::optional<Eigen::MatrixXd> DdmPlanCost::proposal() {
+  if (saturatingCost() == nullptr) return std::nullopt;
+  const size_t most = std::holds_alternative<CostToGo>(terms_) ? 1 : kMaxHeldPlans;
+  const auto better = [](const HeldPlan& a, const HeldPlan& b) { return a.total < b.total; };
+  torques_.rightCols(horizon_).setZero();
+  std::vector<HeldPlan> plans = {{torques_, features_, 0.0, 0.0}};
+  for (int begin = 0; begin < horizon_; begin += SaturatingCost::kHoldSteps) {
+    plans = continued(plans, begin, std::min(SaturatingCost::kHoldSteps, horizon_ - begin));
+    std::stable_sort(plans.begin(), plans.end(), better);
+    if (plans.size() > most) plans.resize(most);
+  }
+  return plans.front().torques.rightCols(horizon_);
 }
 
 Eigen::MatrixXd DdmPlanCost::predictedFeatures() const {
@@ -154,20 +202,24 @@ DdmPlanCost makePlanCost(const Ddm& model, const MpcOptions& options) {
   if (options.cost == "distance") {
     return DdmPlanCost(model, options.horizon, options.control_weight);
   }
-  if (model.torqueDim() > CostToGo::kMaxMotors) {
-    throw std::invalid_argument("mpc/cost time needs a model with at most " +
-                                std::to_string(CostToGo::kMaxMotors) +
+  if (model.torqueDim() > SaturatingCost::kMaxMotors) {
+    throw std::invalid_argument("mpc/cost " + options.cost + " needs a model with at most " +
+                                std::to_string(SaturatingCost::kMaxMotors) +
                                 " motors, as it compares 3^motors sets of torques, got " +
                                 std::to_string(model.torqueDim()) + ": set mpc/cost to distance");
   }
   if (model.info().support_states.cols() < 2) {
-    throw std::invalid_argument(
-        "mpc/cost time needs a model with support states, and this one has none: train it again "
-        "from its bags, or set mpc/cost to distance");
+    throw std::invalid_argument("mpc/cost " + options.cost +
+                                " needs a model with support states, and this one has none: "
+                                "train it again from its bags, or set mpc/cost to distance");
   }
-  return DdmPlanCost(
-      model, options.horizon, options.control_weight,
-      CostToGo(model, perMotor(options.max_torque, model.torqueDim(), "mpc/max_torque")));
+  const Eigen::VectorXd max_torque =
+      perMotor(options.max_torque, model.torqueDim(), "mpc/max_torque");
+  if (options.cost == "saturating") {
+    return DdmPlanCost(model, options.horizon, options.control_weight,
+                       SaturatingCost(model, max_torque, DdmPlanCost::kWidth));
+  }
+  return DdmPlanCost(model, options.horizon, options.control_weight, CostToGo(model, max_torque));
 }
 
 }  // namespace ddm

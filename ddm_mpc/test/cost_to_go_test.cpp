@@ -1,4 +1,4 @@
-// Tests of the cost-to-go: it grows with the steps to the goal, along states that were seen.
+// Tests of the saturating cost, and of the cost-to-go: it grows with the steps to the goal, along states that were seen.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_mpc/cost_to_go.h"
 
@@ -6,7 +6,9 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "ddm_mpc/ddm_plan_cost.h"
@@ -177,6 +179,55 @@ TEST_F(PlansWithCostToGo, TheProposalLeadsOnAndIsHeldForFourSteps) {
   EXPECT_EQ(U(0, 0), 1.0) << "to the corner, not across the gap";
   EXPECT_LT(cost_.evaluate(U, nullptr),
             cost_.evaluate(Eigen::MatrixXd::Zero(2, kHorizon), nullptr));
+}
+
+class PlansWithSaturatingCost : public PlansWithCostToGo {
+ protected:
+  static constexpr int kLong = 20;
+  DdmPlanCost near_{model_, kLong, 0.1, SaturatingCost(model_, Eigen::Vector2d::Ones(), 0.5)};
+};
+
+TEST_F(PlansWithSaturatingCost, TheGradientMatchesFiniteDifferences) {
+  near_.setProblem(restingAt({0.9, 0.95}), Eigen::Vector2d(0.1, 0.0));
+  const auto f = [&](const Eigen::VectorXd& u, Eigen::VectorXd* gradient) {
+    const Eigen::Map<const Eigen::MatrixXd> U(u.data(), 2, kLong);
+    Eigen::MatrixXd d_U;
+    const double value = near_.evaluate(U, gradient != nullptr ? &d_U : nullptr);
+    if (gradient != nullptr) *gradient = Eigen::Map<const Eigen::VectorXd>(d_U.data(), d_U.size());
+    return value;
+  };
+  EXPECT_TRUE(testing::gradientMatches(f, 0.3 * testing::randomMatrix(2 * kLong, 1, 3), 1e-5));
+}
+
+TEST_F(PlansWithSaturatingCost, TheCostIsTheSumOfTheStepsAndNothingComesAfterThem) {
+  const Eigen::Vector2d goal(0.1, 0.0);
+  near_.setProblem(restingAt({0.9, 0.95}), goal);
+  const Eigen::MatrixXd U = Eigen::MatrixXd::Constant(2, kLong, -1.0);
+  const double cost = near_.evaluate(U, nullptr);
+  SaturatingCost step(model_, Eigen::Vector2d::Ones(), 0.5);
+  step.setGoal(goal);
+  const double gentle = std::exp(-0.1 * 2.0 / (2.0 * 0.5 * 0.5));
+  double expected = 0.0;
+  for (int k = 1; k <= kLong; ++k) {
+    const double near = 1.0 - step.evaluate(near_.predictedFeatures().col(k), nullptr);
+    expected += 1.0 - near * gentle;
+  }
+  EXPECT_NEAR(cost, expected, 1e-12 * expected);
+}
+
+TEST_F(PlansWithSaturatingCost, TheProposalIsTheBestOfAllPlansOfHeldTorques) {
+  DdmPlanCost two(model_, /*horizon=*/6, 0.1, SaturatingCost(model_, Eigen::Vector2d::Ones(), 0.5));
+  two.setProblem(restingAt({0.5, 0.3}), Eigen::Vector2d(0.1, 0.0), Eigen::Vector2d(0.01, -0.02));
+  const Eigen::MatrixXd choices = SaturatingCost(model_, Eigen::Vector2d::Ones(), 0.5).torques();
+  ASSERT_EQ(choices.cols(), 9);
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 81; ++i) {
+    Eigen::MatrixXd U(2, 6);
+    U.leftCols(4).colwise() = choices.col(i / 9);
+    U.rightCols(2).colwise() = choices.col(i % 9);
+    least = std::min(least, two.evaluate(U, nullptr));
+  }
+  EXPECT_NEAR(two.evaluate(two.proposal().value(), nullptr), least, 1e-12);
 }
 
 #ifdef NDEBUG  // sanitizers take memory of their own

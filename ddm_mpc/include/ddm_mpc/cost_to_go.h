@@ -7,23 +7,20 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "ddm_mpc/saturating_cost.h"
+
 namespace ddm {
 
 /// Cost-to-go V(x): the cost of all later steps under the best torques. Deviation: the paper has no
 /// cost-to-go. A plan needs it if |z - z_ref| misleads: a weak motor has to swing a rod away from
-/// the goal before it can reach the goal. A step costs at most 1, as in PILCO (Deisenroth and
-/// Rasmussen, ICML 2011),
-///
-///   stepCost(z) = 1 - exp(-|z - z_ref|^2 / (2 w^2 s^2))
-///
-/// with w = 1/4 and the spread s of the support states' features. V is the discounted sum of these
-/// costs. Value iteration computes V_i at the support states x_i of the model, which are states of
+/// the goal before it can reach the goal. V is the discounted sum of the SaturatingCost of each step,
+/// with the width w = 1/4. Value iteration computes V_i at the support states x_i of the model, which are states of
 /// the training data. The prediction model f predicts m = 4 steps from each of them, under each
 /// combination of the torques -max, 0 and max of the motors. Between the support states, a kernel
 /// interpolates (Ormoneit and Sen, Machine Learning 2002; its averages make the iteration
 /// converge):
 ///
-///   V_i = min_u  sum_{j=1..m} gamma^(j-1) stepCost(z_{i,j}) + gamma^m V(x_{i,m})
+///   V_i = min_u  sum_{j=1..m} gamma^(j-1) cost(z_{i,j}) + gamma^m V(x_{i,m})
 ///   V(x) = (w_0 V_0 + sum_i w_i V_i) / (w_0 + sum_i w_i)
 ///   w_i  = exp(-|p(x) - p(x_i)|^2 / (2 h^2))
 ///
@@ -36,11 +33,11 @@ namespace ddm {
 /// (R-max: Brafman and Tennenholtz, JMLR 2002), and follow a path once it is known.
 class CostToGo {
  public:
-  static constexpr int kHoldSteps = 4;    ///< m, steps for which the torques are held [-]
-  static constexpr double kWidth = 0.25;  ///< w [-]
+  static constexpr int kHoldSteps = SaturatingCost::kHoldSteps;  ///< m, of the torques [-]
+  static constexpr double kWidth = 0.25;                         ///< w [-]
   /// Three motors have 3^3 combinations of torques for each of up to 1000 support states, each with
   /// up to 1000 weights: up to half a gigabyte and two seconds. Each further motor triples both.
-  static constexpr int kMaxMotors = 3;
+  static constexpr int kMaxMotors = SaturatingCost::kMaxMotors;
 
   /// @param model       has at least two support states and at most kMaxMotors motors; must outlive
   ///                    the object
@@ -54,11 +51,6 @@ class CostToGo {
   /// @param exploring  whether epsilon > 0; determines V_0
   void setGoal(const Eigen::VectorXd& z_ref, bool exploring);
 
-  /// @param z         feature                                 [feature_dim]
-  /// @param gradient  out: d stepCost / dz; null: skip        [feature_dim]
-  /// @pre setGoal() was called
-  double stepCost(const Eigen::Ref<const Eigen::VectorXd>& z, Eigen::VectorXd* gradient) const;
-
   /// Evaluates V(x) for a state with these two newest features.
   /// @param z         z_t                                     [feature_dim]
   /// @param before    z_{t-1}                                 [feature_dim]
@@ -69,9 +61,7 @@ class CostToGo {
                const Eigen::Ref<const Eigen::VectorXd>& before, Eigen::VectorXd* d_z,
                Eigen::VectorXd* d_before) const;
 
-  /// @return torques that value iteration compares, one combination per column [N m]
-  ///         [torque_dim x 3^torque_dim]
-  const Eigen::MatrixXd& torques() const { return torques_; }
+  const SaturatingCost& stepCost() const { return step_cost_; }  ///< cost of a step
 
  private:
   /// Prediction from a support state under one combination of torques.
@@ -90,14 +80,12 @@ class CostToGo {
   void iterate(const std::vector<std::vector<double>>& costs);
 
   const Ddm* model_;
-  Eigen::MatrixXd torques_;
-  double spread_ = 1.0;         // of the features of the support states
-  double change_spread_ = 1.0;  // of their changes z_t - z_{t-1}
+  SaturatingCost step_cost_;    // also knows the torques that value iteration compares
+  double change_spread_ = 1.0;  // of the changes z_t - z_{t-1} of the support states
   double h_ = 1.0;              // width of the kernel, in units of both spreads
   Eigen::MatrixXd points_;      // p(x_i)  [2 feature_dim x M]
   // Of each support state, one for each combination of torques. Empty before setGoal().
   std::vector<std::vector<Outcome>> outcomes_;
-  Eigen::VectorXd z_ref_;
   bool exploring_ = false;
   Eigen::ArrayXd values_;  // V_i  [M]
 };

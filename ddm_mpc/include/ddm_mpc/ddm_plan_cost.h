@@ -8,6 +8,8 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <variant>
+#include <vector>
 
 #include "ddm_mpc/cost_to_go.h"
 #include "ddm_mpc/mpc_options.h"
@@ -20,25 +22,32 @@ namespace ddm {
 ///
 ///   z_{k+1} = f(z_k, u_k, z_{k-1}, u_{k-1}) + offset
 ///
-/// Deviation: with a CostToGo, the cost of a step saturates, and the last state has a cost-to-go,
+/// Deviation: with a SaturatingCost, the cost of a step saturates, and with a CostToGo, the last
+/// state has a cost-to-go, too,
 ///
 ///   J(U) = sum_{k=1}^{K} (1 - exp(-c_k / (2 w^2))) + V(x_K)
 ///   c_k  = |z_k - z_ref|^2 / s^2 + lambda |u_{k-1} / max_torque|^2
 ///
-/// with s and w of CostToGo. Far from the goal, a step costs 1 for every torque; at the goal, a
-/// torque raises the cost of the step to at most 1.
+/// with s and w of the SaturatingCost; without a CostToGo, V = 0. Far from the goal, a step costs 1
+/// for every torque; at the goal, a torque raises the cost of the step to at most 1.
 ///
 /// Deviation: the offset (0 in the paper) corrects each prediction by the error of recent
 /// predictions. Offset-free MPC assumes the same error in every step (Pannocchia and Rawlings,
 /// AIChE J. 2003).
 class DdmPlanCost : public PlanCost {
  public:
+  static constexpr double kWidth = 0.5;  ///< w without a CostToGo [-]
+  /// Plans that proposal() keeps without a CostToGo: all plans of one motor with 20 steps.
+  static constexpr size_t kMaxHeldPlans = 243;
+
+  /// std::monostate: eq. (9).
+  using Terms = std::variant<std::monostate, SaturatingCost, CostToGo>;
+
   /// @param model           must outlive the cost
   /// @param horizon         K, at least 1 [-]
-  /// @param control_weight  lambda [(N m)^-2]; with a CostToGo [-]
-  /// @param cost_to_go      empty: eq. (9)
-  DdmPlanCost(const Ddm& model, int horizon, double control_weight,
-              std::optional<CostToGo> cost_to_go = std::nullopt);
+  /// @param control_weight  lambda [(N m)^-2]; with a SaturatingCost or a CostToGo [-]
+  /// @param terms           what J(U) consists of
+  DdmPlanCost(const Ddm& model, int horizon, double control_weight, Terms terms = {});
 
   /// Sets the goal. If goal_feature or exploring has changed, computes the cost-to-go, which takes
   /// up to two seconds. setProblem() sets the goal, too.
@@ -59,8 +68,10 @@ class DdmPlanCost : public PlanCost {
   }
 
   double evaluate(const Eigen::Ref<const Eigen::MatrixXd>& U, Eigen::MatrixXd* d_U) override;
-  /// Proposes a plan: of the torques that CostToGo compares, the best ones for its first kHoldSteps
-  /// steps, then the best ones for the steps after them, and so on. Empty without a CostToGo.
+  /// Proposes a plan by a beam search over the torques of SaturatingCost, each held for its
+  /// kHoldSteps steps. With a CostToGo, only the best plan is continued after each decision, because
+  /// V tells where it leads. Without one, the best kMaxHeldPlans are, because no plan may come near
+  /// the goal before the last decision. Empty with eq. (9).
   std::optional<Eigen::MatrixXd> proposal() override;
   Eigen::MatrixXd predictedFeatures() const override;
   Eigen::VectorXd goalFeature() const override { return goal_feature_; }
@@ -68,20 +79,31 @@ class DdmPlanCost : public PlanCost {
   int torqueDim() const override { return f_.torqueDim(); }
 
  private:
+  struct HeldPlan {
+    Eigen::MatrixXd torques;   // like torques_
+    Eigen::MatrixXd features;  // the newest n + d features after the plan, like features_
+    double cost;               // sum of its steps' costs
+    double total;              // with the cost-to-go
+  };
+
+  const SaturatingCost* saturatingCost() const;
+  std::vector<HeldPlan> continued(const std::vector<HeldPlan>& plans, int begin, int num_steps);
   void rollOut(const Eigen::Ref<const Eigen::MatrixXd>& U, int num_steps);
   Eigen::VectorXd featureAfter(int num_steps) const;
-  double stepCost(int step, const Eigen::Ref<const Eigen::VectorXd>& u, Eigen::VectorXd* d_z,
+  double stepCost(const Eigen::Ref<const Eigen::VectorXd>& z,
+                  const Eigen::Ref<const Eigen::VectorXd>& u, Eigen::VectorXd* d_z,
                   Eigen::VectorXd* d_u) const;
 
   const PredictionModel<double>& f_;
   const double* theta_p_;
   int horizon_ = 0;
   Eigen::ArrayXd control_weight_;  // factor of each motor's squared torque [(N m)^-2]
-  std::optional<CostToGo> cost_to_go_;
+  Terms terms_;
   bool exploring_ = false;
   Eigen::VectorXd goal_feature_;
   Eigen::VectorXd offset_;
   RollOut<double> roll_out_;
+  RollOut<double> search_;     // of the plans that proposal() compares
   Eigen::MatrixXd features_;   // z_{-n-d+1} ... z_0                    [feature_dim x (n + d)]
   Eigen::MatrixXd torques_;    // u_{-n-d+1} ... u_{K-1} [N m]  [torque_dim x (n + d - 1 + K)]
   Eigen::MatrixXd d_torques_;  // dJ/d torques_ [1/(N m)]
@@ -92,8 +114,8 @@ class DdmPlanCost : public PlanCost {
 /// Makes the cost that mpc/cost selects.
 /// @param model  must outlive the cost
 /// @throws std::invalid_argument if max_torque exceeds that of the model or has a wrong number of
-///         entries. With mpc/cost time, also if the model has fewer than two support states or more
-///         than CostToGo::kMaxMotors motors
+///         entries. With mpc/cost saturating or time, also if the model has fewer than two support states or more
+///         than SaturatingCost::kMaxMotors motors
 DdmPlanCost makePlanCost(const Ddm& model, const MpcOptions& options);
 
 }  // namespace ddm

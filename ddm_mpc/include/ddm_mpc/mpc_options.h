@@ -13,8 +13,8 @@ namespace ddm {
 /// Block `mpc`.
 struct MpcOptions {
   int horizon = 15;               ///< K, planned steps [-]
-  std::string cost = "distance";  ///< cost of a step: "distance" or "time", see DdmPlanCost
-  double control_weight = 0.01;   ///< lambda, weight of torque [(N m)^-2]; with cost time [-]
+  std::string cost = "distance";  ///< "distance", "saturating" or "time", see DdmPlanCost
+  double control_weight = 0.01;   ///< lambda, weight of torque [(N m)^-2]; other costs [-]
   double offset_gain = 0.0;       ///< share of a prediction error that enters the offset [-]
   std::vector<double> max_torque = {6.0};  ///< bound on |u|; one for all motors, or one each [N m]
   double epsilon = 0.2;                    ///< probability of a uniformly random torque [-]
@@ -42,7 +42,8 @@ struct MpcOptions {
   std::vector<std::string> problems() const {
     OptionChecks mpc("mpc");
     mpc.requireWithin("horizon", horizon, 1, 1000);
-    mpc.require(cost == "distance" || cost == "time", "cost", "be distance or time", cost);
+    mpc.require(cost == "distance" || cost == "saturating" || cost == "time", "cost",
+                "be distance, saturating or time", cost);
     mpc.requireNotNegative("control_weight", control_weight);
     mpc.requireWithin("offset_gain", offset_gain, 0.0, 1.0);
     mpc.require(areLimits(max_torque), "max_torque", "be > 0 and finite", limitsText(max_torque));
