@@ -33,7 +33,7 @@ class SimulatedRobotTest(unittest.TestCase):
         for service in ("take_goal", "enable", "reset"):
             rospy.wait_for_service(service, LIMIT_S)
         wait_until(lambda: rospy.ServiceProxy("take_goal", Trigger)().success, "a camera")
-        self.assertTrue(rospy.ServiceProxy("enable", SetBool)(True).success)
+        wait_until(lambda: rospy.ServiceProxy("enable", SetBool)(True).success, "permission")  # all peers are there
         reset = rospy.ServiceProxy("reset", Reset)()
         self.assertTrue(reset.success, reset.message)
         self.assertEqual(list(truth.next().position), [MIDDLE, MIDDLE])
