@@ -17,6 +17,14 @@ STEPS, DT = 30, 0.1
 LIMIT_S = 120.0
 
 
+def wait_for_success(service, kind, *arguments):
+    """Calls a service until it succeeds, because the robot needs all of its peers before."""
+    deadline = time.monotonic() + LIMIT_S
+    while not rospy.ServiceProxy(service, kind)(*arguments).success:
+        assert time.monotonic() < deadline, service
+        time.sleep(0.1)
+
+
 def test_an_experiment_on_a_robot_is_stopped_and_resumed_with_another_crop(master, tmp_path):
     """The user tunes crop and goal_distance until the first trial is finished, as the tutorial describes."""
     out = str(tmp_path / "out")
@@ -69,17 +77,14 @@ def test_a_rehearsal_runs_to_its_end_with_a_listener_in_the_place_of_the_motor(m
                          "trials:=0", "config:=%s" % config, "runs:=" + out, port=0) as launch:
         launch.waitForText("call service take_goal", LIMIT_S)
         assert rospy.ServiceProxy("take_goal", Trigger)().success
-        assert rospy.ServiceProxy("enable", SetBool)(True).success
+        wait_for_success("enable", SetBool, True)
         launch.waitForText("reset_done", LIMIT_S)
         assert rospy.ServiceProxy("reset_done", Trigger)().success
         launch.waitForText("motors follow", LIMIT_S)
         publishers, _, _ = rosgraph.Master("/test").getSystemState()
         assert dict(publishers)["/rehearsal"] == ["/robot_node"]
         assert [name for name, _ in publishers if name.endswith("effort_command")] == []
-        deadline = time.monotonic() + LIMIT_S
-        while not rospy.ServiceProxy("reset_done", Trigger)().success:  # reset for the evaluation, after the training
-            assert time.monotonic() < deadline
-            time.sleep(0.1)
+        wait_for_success("reset_done", Trigger)  # reset for the evaluation, after the training
         launch.waitForEnd(LIMIT_S)
     shown.shutdown()
     assert "summary.yaml" in files_in(out), launch.output
