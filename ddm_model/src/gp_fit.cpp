@@ -285,7 +285,7 @@ Transitions withoutOutliers(const Transitions& transitions, std::mt19937_64* rng
 void replaceByGp(const Eigen::MatrixXd& Z, const DataSet& data, std::mt19937_64* rng,
                  const std::function<void()>& check, ModelOptions* model, Eigen::VectorXd* theta) {
   const int motors = data.torqueDim();
-  const int num_rows = model->feature_dim + motors;  // of each sample in the regressor
+  const Eigen::Index num_rows = model->feature_dim + motors;  // of each sample in the regressor
   ModelOptions longest = *model;
   longest.order += kMaxFurtherSamples;
   const auto transitionsOfOrder = [&] {
