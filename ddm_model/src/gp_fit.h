@@ -43,9 +43,9 @@ DifferentiableFunction negativeLogLikelihood(const Eigen::MatrixXd& inputs,
 
 /// Selects the order of f by the marginal likelihood of the same transitions, with a penalty for
 /// each parameter (Bayesian information criterion). The likelihood of at most 400 transitions, which
-/// are drawn at random, is extrapolated to all of them: the more there are, the more inputs f may
-/// have. If the images of the camera are d samples late,
-/// the result is usually d + 1 or more, because f then needs torques that are d samples older.
+/// are drawn at random, is extrapolated to all transitions: the more transitions there are, the more
+/// inputs f may have. If the images of the camera are d samples late, the result is usually d + 1 or
+/// more, because f then needs torques that are d samples older.
 /// @param longest    transitions of the largest order; their first rows are those of lower orders
 /// @param num_rows   rows of each sample in the regressor: feature_dim + torque_dim
 /// @param min_order  smallest order
@@ -59,8 +59,8 @@ int selectOrder(const Transitions& longest, Eigen::Index num_rows, int min_order
 /// 400 transitions, which are drawn at random. A pivoted Cholesky decomposition of the kernel
 /// matrix selects the centres among all transitions: it takes the transition whose output the
 /// centres so far explain worst, until the variance that is not explained is a tenth of the noise's
-/// everywhere, or until there are max_centres centres. The weights follow from all transitions (subset of
-/// regressors: Rasmussen and Williams, 2006, Sec. 8.3.1).
+/// everywhere, or until there are max_centres centres. The weights follow from all transitions
+/// (subset of regressors: Rasmussen and Williams, 2006, Sec. 8.3.1).
 /// @param rng    draws the transitions
 /// @param check  called after each iteration; may throw to cancel the fit
 /// @return       parameters of GpMean
@@ -70,9 +70,9 @@ Eigen::VectorXd fitGp(const Transitions& transitions, std::mt19937_64* rng,
 
 /// Removes transitions that a Gaussian process predicts far worse than most others. The features of
 /// an image in which the plant cannot be seen say nothing about its state, and a few transitions
-/// from and to such images raise the noise that fitGp() estimates for all: without 4 % of the
-/// transitions of the cart-pole, whose cart can leave the image, the errors over five steps are
-/// half as large. A transition is removed if its squared error exceeds 12 times the median, in units
+/// from and to such images raise the noise that fitGp() estimates for all transitions. The cart of
+/// the cart-pole can leave the image: without 4 % of its transitions, the errors over five steps are
+/// about half as large. A transition is removed if its squared error exceeds 12 times the median, in units
 /// of the spread of each output; errors below 3 % of the spread count as 3 %. After the first round,
 /// a Gaussian process that is fitted to the remaining transitions judges all of them again.
 /// @param rng, check  see fitGp()

@@ -230,6 +230,14 @@ TEST_F(PlansWithSaturatingCost, TheProposalIsTheBestOfAllPlansOfHeldTorques) {
   EXPECT_NEAR(two.evaluate(two.proposal().value(), nullptr), least, 1e-12);
 }
 
+/// Two decisions far from the goal cost exactly the same, whatever they are.
+TEST_F(PlansWithSaturatingCost, TheProposalKeepsPlansThatAreNoBetterYet) {
+  DdmPlanCost three(model_, /*horizon=*/12, 0.1,
+                    SaturatingCost(model_, Eigen::Vector2d::Ones(), 0.5));
+  three.setProblem(restingAt({-2.37, -2.47}), Eigen::Vector2d(0.1, 0.0));
+  EXPECT_EQ(three.proposal().value(), Eigen::MatrixXd::Ones(2, 12));
+}
+
 #ifdef NDEBUG  // sanitizers take memory of their own
 /// Features that hardly move, so that all support states have a weight in each of the others.
 TEST(CostToGo, TakesAtMostHalfAGigabyteForTheMostMotorsAndSupportStates) {

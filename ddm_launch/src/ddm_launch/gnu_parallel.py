@@ -17,6 +17,7 @@ PARALLEL = DIE_WITH_PARENT + ["parallel", "--plain", "--will-cite"]
 
 
 def environment_of_parallel():
+    """Environment of GNU parallel: its ssh processes end with it."""
     return dict(os.environ, PARALLEL_SHELL="/bin/bash",
                 PARALLEL_SSH=" ".join(DIE_WITH_PARENT + [os.environ.get("PARALLEL_SSH", "ssh")]))
 
@@ -26,15 +27,16 @@ def hosts_that_answer(path):
     Failure if no host answers. GNU parallel's own --filter-hosts is not used, because it stops with an internal error
     at every host whose login shell prints something."""
     with open(path, errors="replace") as stream:
-        hosts = [line.strip() for line in stream if line.split("#")[0].strip()]
+        hosts = [host for host in (line.split("#")[0].strip() for line in stream) if host]
+    print("asking %d hosts whether they answer" % len(hosts), flush=True)
     checks = [subprocess.Popen(PARALLEL + ["--sshlogin", host, "--jobs", "1", "--timeout", str(ANSWER_S), "true", ":::", ""],
                                stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
                                env=environment_of_parallel()) for host in hosts]
     answers = [host for host, check in zip(hosts, checks) if check.wait() == 0]
     if not answers:
-        raise Failure("none of the hosts in %s answers: %s. Try: ssh HOST true" % (path, ", ".join(hosts) or "it names none"))
+        raise Failure("none of the hosts in %s answers: %s. Try: ssh HOST true" % (path, ", ".join(hosts) or "the file is empty"))
     if len(answers) < len(hosts):
-        print("sweep: these hosts do not answer, and are left out: %s" % ", ".join(h for h in hosts if h not in answers),
+        print("sweep: these hosts do not answer, and are left out: %s" % ", ".join(host for host in hosts if host not in answers),
               file=sys.stderr)
     return answers
 

@@ -114,8 +114,8 @@ class DdmPlanCost : public PlanCost {
 /// Makes the cost that mpc/cost selects.
 /// @param model  must outlive the cost
 /// @throws std::invalid_argument if max_torque exceeds that of the model or has a wrong number of
-///         entries. With mpc/cost saturating or time, also if the model has fewer than two support states or more
-///         than SaturatingCost::kMaxMotors motors
+///         entries. With mpc/cost saturating or time, also if the model has fewer than two support
+///         states or more than SaturatingCost::kMaxMotors motors
 DdmPlanCost makePlanCost(const Ddm& model, const MpcOptions& options);
 
 }  // namespace ddm
