@@ -238,7 +238,8 @@ TEST_F(Trainer, TellsItsProgress) {
   training_.function_tolerance = 0.0;  // line searches get difficult
   std::vector<TrainingProgress> told;
   const TrainingResult result = run([&told](const TrainingProgress& progress) {
-    if (progress.v_r > 0.0) told.push_back(progress);  // earlier calls come before there are parameters
+    if (progress.v_r > 0.0)
+      told.push_back(progress);  // earlier calls come before there are parameters
     return true;
   });
   ASSERT_GE(told.size(), 10U);

@@ -18,7 +18,7 @@ from ddm_model.model import load
 SUFFIX = ".webp"
 AHEAD_S = 1.0
 # Text below the features: distance from the left edge as a share of the width, word, and colour.
-FEATURES = (0.0, "features:", "black"), (0.33, "now", BLUE), (0.51, "plan", ORANGE), (0.67, "goal", VERMILLION), (0.84, "seen", GREY)
+FEATURES = (0.0, "features:", "black"), (0.34, "now", BLUE), (0.51, "plan", ORANGE), (0.68, "goal", VERMILLION), (0.85, "seen", GREY)
 LAST_MS = 1500  # duration of the last image of an evaluation [ms]
 EVALUATION = re.compile(r"evaluation_(\d+)$")
 STRIP_IMAGES = 12
@@ -98,7 +98,7 @@ def pictures_of(clip, count):
             image_axes.set_xlabel("image")
             expected_axes.set_xlabel("predicted %g s ago" % AHEAD_S)
             for left, word, colour in FEATURES:
-                plane.text(left, -0.13, word, color=colour, fontsize=6.8, transform=plane.transAxes)
+                plane.text(left, -0.13, word, color=colour, fontsize=6.2, transform=plane.transAxes)
             figure.suptitle("%s:   %4.1f s" % (clip.title, now * clip.dt), x=0.02, horizontalalignment="left")
             figure.canvas.draw()
             pictures.append(Image.fromarray(np.asarray(figure.canvas.buffer_rgba())).convert("RGB"))
