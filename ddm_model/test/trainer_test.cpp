@@ -238,8 +238,7 @@ TEST_F(Trainer, TellsItsProgress) {
   training_.function_tolerance = 0.0;  // line searches get difficult
   std::vector<TrainingProgress> told;
   const TrainingResult result = run([&told](const TrainingProgress& progress) {
-    if (progress.v_r > 0.0)
-      told.push_back(progress);  // earlier calls come before there are parameters
+    if (progress.v_r > 0.0) told.push_back(progress);  // before, there are no parameters
     return true;
   });
   ASSERT_GE(told.size(), 10U);
@@ -258,7 +257,7 @@ TEST_F(Trainer, ReportsAndStopsTheFitOfAGaussianProcessToo) {
   model_.predictor = "gp";
   std::vector<TrainingProgress> told;
   run([&told](const TrainingProgress& progress) {
-    if (progress.v_r > 0.0) told.push_back(progress);  // not while there is no theta yet
+    if (progress.v_r > 0.0) told.push_back(progress);  // before, there are no parameters
     return true;
   });
   ASSERT_GT(told.back().fraction_done, 0.99);
