@@ -21,7 +21,7 @@ class ShootingPolicy : public ddm::Policy {
       : model_(model),
         uniform_(-max_torque, max_torque),
         z_ref_(model->goalFeature()),
-        x_(model->options().memory(), model->featureDim(), model->torqueDim()) {}
+        x_(model->options().order, model->featureDim(), model->torqueDim()) {}
 
   void startTrial(const ddm::TrialId& id) override {
     x_.clear();

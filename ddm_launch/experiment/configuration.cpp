@@ -70,10 +70,7 @@ void requireConsistent(const Configuration& all) {
           "trial/num_steps times trial/episodes must be more than model/pca_dim: the first model "
           "has one trial to learn from",
           num_steps * all.trial.episodes);
-  require(num_steps > model.order + largestDelay(model, all.model.training),
-          "trial/num_steps must be more than model/order and the largest delay together, "
-          "model/delay or training/max_delay",
-          num_steps);
+  require(num_steps > model.order, "trial/num_steps must be more than model/order", num_steps);
   if (problems.tellp() > 0) {
     throw std::invalid_argument("invalid configuration:" + problems.str());
   }

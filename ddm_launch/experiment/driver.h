@@ -23,7 +23,7 @@ struct TrialRequest {
   TrialId id;
   int num_steps = 0;     ///< samples [-]
   double epsilon = 0.0;  ///< probability of a random torque [-]; 1 needs no model
-  int hold_steps = 1;    ///< samples for which an exploratory torque is held [-]
+  int hold_steps = 1;    ///< most samples for which an exploratory torque is held [-]
   std::string bag;       ///< path of the recording; empty: the episode is not recorded
 };
 

@@ -13,13 +13,12 @@ STEP_S = 0.2
 ALL_NUISANCES = """\
 camera: {noise_std: 0.1, brightness_drift: 0.2, delay: 1, drop_rate: 0.15}
 plant: {rod_half_width: 0.05}
-model: {residual: true, increments: true, order: 3}
-training: {num_starts: 2, selection_steps: 2, prediction_steps: 2, weight_decay: 0.1}
+model: {predictor: gp, order: 3}
+training: {num_starts: 2, prediction_steps: 2, weight_decay: 0.1}
 mpc: {offset_gain: 0.3}
 """
 EPISODES = """\
 model: {blur: 1.0}
-training: {max_delay: 1}
 mpc: {cost: time}
 trial: {episodes: 2}
 """

@@ -85,10 +85,10 @@ TEST(Configuration, ThePaperPresetHoldsTheNumbersOfThePaper) {
   EXPECT_EQ(all.model.model.order, 2);
   EXPECT_EQ(all.model.model.encoder_widths, (std::vector<int>{25, 12, 6}));
   EXPECT_EQ(all.model.model.predictor_widths, (std::vector<int>{4}));
-  EXPECT_FALSE(all.model.model.residual || all.model.model.increments);
+  EXPECT_EQ(all.model.model.predictor, "network");
   EXPECT_EQ(all.model.training.prediction_steps, 1);
   EXPECT_EQ(all.model.training.weight_decay, 0.0);
-  EXPECT_EQ(all.model.training.selection_steps, 0);
+  EXPECT_EQ(all.model.training.num_starts, 1);
   EXPECT_EQ(all.mpc.offset_gain, 0.0);
   EXPECT_EQ(all.mpc.horizon, 15);
   EXPECT_EQ(all.mpc.control_weight, 0.01);
@@ -100,9 +100,13 @@ TEST(Configuration, ThePaperPresetHoldsTheNumbersOfThePaper) {
     EXPECT_EQ(all.plant->block()[key].as<double>(), 1.0) << key;
   }
   EXPECT_EQ(all.plant_info.tolerance, 10.0);
-  // The file of a plant overrides the preset.
-  EXPECT_EQ(all.model.training.max_iterations, 500);
-  EXPECT_EQ(read(arguments("paper", "moving_tile")).model.training.max_iterations, 3000);
+}
+
+TEST(Configuration, ThePresetsForFewAndForManyMotorsHaveTheSameModel) {
+  const auto modelOf = [](const std::string& preset) {
+    return YAML::Dump(toYaml(read(arguments(preset, "pendulum")).model.model));
+  };
+  EXPECT_EQ(modelOf("underactuated"), modelOf("efficient"));
 }
 
 TEST(Configuration, ANameThatDoesNotExistIsRefusedWithThoseThatDo) {
@@ -110,7 +114,7 @@ TEST(Configuration, ANameThatDoesNotExistIsRefusedWithThoseThatDo) {
     return throwsNaming<std::invalid_argument>([&] { read(given); }, words);
   };
   EXPECT_TRUE(refused(arguments("papier", "pendulum"),
-                      {"unknown preset 'papier'", "debug, efficient, gp, paper, underactuated"}));
+                      {"unknown preset 'papier'", "debug, efficient, paper, underactuated"}));
   for (const std::string name : {"nuisance/fog", "noise", "noise/noise"}) {
     EXPECT_TRUE(refused(arguments("paper", "pendulum", {name}),
                         {"'" + name + "'", "nuisance/clutter", "oracle/suite_reacher"}));

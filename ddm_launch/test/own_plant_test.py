@@ -72,8 +72,7 @@ def test_its_keys_are_checked_and_an_unknown_plugin_or_plant_is_told_what_there_
 
 
 def test_from_one_random_trial_the_model_learns_to_stop_the_cart_at_its_goal(tmp_path):
-    code, output = run_experiment("--preset", "efficient", "--plant", "ddm_cart/cart", "--trials", 0, "--set",
-                                  "training/num_starts=2", "--set", "training/max_iterations=150", "--out", tmp_path / "out")
+    code, output = run_experiment("--preset", "efficient", "--plant", "ddm_cart/cart", "--trials", 0, "--out", tmp_path / "out")
     assert code == 0, output
     x = [float(row[2]) for row in read_rows(tmp_path, "out", "evaluation_000", "trajectory.csv")[1:]]
     assert abs(x[0]) < 0.4 and max(abs(position - 0.6) for position in x[-25:]) < 0.05

@@ -79,7 +79,7 @@ def test_bad_options_are_refused_by_name_and_leave_no_folder(tmp_path):
     out = str(tmp_path / "out")
     for words, more in (
             (["'--out'"], []), (["--nonsense"], ["--out", out, "--nonsense"]), (["positional"], ["--out", out, "paper"]),
-            (["unknown preset 'papier'", "debug, efficient, gp, paper, underactuated"], ["--out", out, "--preset", "papier"]),
+            (["unknown preset 'papier'", "debug, efficient, paper, underactuated"], ["--out", out, "--preset", "papier"]),
             (["--seed", "99999999999"], ["--out", out, "--seed", "99999999999"]),
             (["--trials", "3x"], ["--out", out, "--trials", "3x"]),
             (["mpc/horzion", "horizon?", "mpc/epsilon", "1.5", "plant/dt", "fast", "trial/num_steps", "bad.yaml"],

@@ -106,7 +106,7 @@ def test_evaluate_repeats_the_evaluation_of_the_experiment_however_many_run_at_a
 
 def test_evaluate_takes_the_model_s_own_shape_and_refuses_what_does_not_fit(before, tmp_path):
     model, out = str(tmp_path / "shape.ddm"), str(tmp_path / "out")
-    (tmp_path / "shape.yaml").write_text("image: {size: 40}\nmodel: {residual: true, increments: true, order: 3}\n")
+    (tmp_path / "shape.yaml").write_text("image: {size: 40}\nmodel: {predictor: gp, order: 3}\n")
     code, output = call([find_program("train_from_bags", "ddm_model"), "--config", tmp_path / "shape.yaml", "--out", model,
                          *before.bags])
     assert code == 0, output

@@ -41,7 +41,7 @@ def test_variants_are_compared_with_the_preset_by_seed_and_the_worst_comes_first
     assert (steps.seeds, steps.difference, steps.se) == (3, -1.0, 0.0)
     assert (steps.p, steps.p_holm) == (0.25, 0.5)  # three of three pairs differ; there are two variants
     assert blur.difference == -0.25 and blur.se == pytest.approx(0.25)
-    rows = pages.Functions(str(tmp_path)).variants("ablation", "200 to 300").split("\n")
+    rows = pages.Functions(str(tmp_path)).variants("200 to 300").split("\n")
     assert rows == ["| no multi-step loss | −1.000 ± 0.000 | 0.500 |", "| no blur | −0.250 ± 0.250 | 1.000 |"]
 
 

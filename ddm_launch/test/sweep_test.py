@@ -168,7 +168,7 @@ def test_a_table_that_makes_no_sense_is_named(copy):
     (["--jobs", "whole number >= 1, got '0'"], debug("x") + ["--jobs", 0]),
     (["--hosts", "/no/hosts"], debug("x") + ["--hosts", "/no/hosts"]),
     (["--hosts and --slurm"], debug("x") + ["--hosts", __file__, "--slurm"]),
-    (["unknown preset 'papier'", "efficient, gp, paper, underactuated"], ["--seeds", "0:4", "--out", "x", "--preset", "papier"]),
+    (["unknown preset 'papier'", "efficient, paper, underactuated"], ["--seeds", "0:4", "--out", "x", "--preset", "papier"]),
     (["nonsense"], debug("x") + ["--nonsense"]), (["nonsense"], debug("x") + ["--", "--nonsense"]),
     (["--seed"], debug("x") + ["--", "--seed=3"]), (["runs no experiment"], debug("x") + ["--", "--help"]),
     (["invalid choice: 'simulate'"], debug("x") + ["--program", "simulate"]),

@@ -168,20 +168,18 @@ py::array_t<std::uint8_t> decode(const Ddm& model, const py::object& features) {
 Eigen::MatrixXd rollOut(const Ddm& model, const py::object& features, const py::object& torques,
                         bool one_step) {
   const Eigen::Index order = model.options().order;
-  const Eigen::Index memory = model.options().memory();
   const Eigen::MatrixXd z = samplesOf(features, "features", model.featureDim());
   const Eigen::MatrixXd u = samplesOf(torques, "torques", model.torqueDim());
-  const auto num_steps = static_cast<int>(u.cols() - memory + 1);
+  const auto num_steps = static_cast<int>(u.cols() - order + 1);
   if (z.cols() != order || num_steps < 1 || (one_step && num_steps != 1)) {
     throw py::value_error("features must have " + std::to_string(order) + " rows and torques " +
-                          (one_step ? "" : "at least ") + std::to_string(memory) +
+                          (one_step ? "" : "at least ") + std::to_string(order) +
                           ", the oldest first, got " + std::to_string(z.cols()) + " and " +
                           std::to_string(u.cols()));
   }
-  // A delay lets torques, but not features, reach back further than `order` samples.
   Eigen::MatrixXd Z = Eigen::MatrixXd::Zero(z.rows(), u.cols());
-  Z.middleCols(memory - order, order) = z;
-  return model.rollOut(Z, u, memory - 1, num_steps).rightCols(num_steps);
+  Z.leftCols(order) = z;
+  return model.rollOut(Z, u, order - 1, num_steps).rightCols(num_steps);
 }
 
 py::dict infoOf(const Ddm& model) {
@@ -233,8 +231,7 @@ PYBIND11_MODULE(_core, module) {
           arg("features"), arg("torques"),
           "Predicts one step: z_{t+1} = f(z_t, u_t, ..., z_{t-n+1}, u_{t-n+1}).\n\n"
           "features: the last n = options['order'] features, oldest first [n, feature_dim].\n"
-          "torques: the last torques with u_t at the end [n, torque_dim, N m]; d more if the\n"
-          "images are d = options['delay'] samples late.\n"
+          "torques: the last n torques with u_t at the end [n, torque_dim, N m].\n"
           "Returns z_{t+1} [feature_dim]. Raises TypeError or ValueError.")
       .def(
           "rollout",

@@ -116,7 +116,7 @@ Eigen::MatrixXd Ddm::rollOut(const Eigen::MatrixXd& Z,
                              const Eigen::Ref<const Eigen::MatrixXd>& torques, Eigen::Index frame,
                              int num_steps) const {
   const PredictionModel<double>& f = predictionModel();
-  const Eigen::Index n = f.memory();
+  const Eigen::Index n = f.order();
   if (Z.rows() != f.featureDim() || torques.rows() != f.torqueDim() || torques.cols() != Z.cols()) {
     throw std::invalid_argument(
         "roll-out: the model takes features " + shape(f.featureDim(), Z.cols()) + " and torques " +

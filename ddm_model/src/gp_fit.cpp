@@ -167,7 +167,7 @@ Transitions transitionsOf(const PredictionModel<double>& f, const Eigen::MatrixX
       out.changes.col(i) = Z.col(t + 1) - Z.col(t);
     }
   }
-  f.toIncrements(out.regressors);
+  f.toDifferences(out.regressors);
   return out;
 }
 

@@ -24,7 +24,7 @@ struct Transitions {
   Eigen::MatrixXd changes;     ///< z_{t+1} - z_t                            [feature_dim x N]
 };
 
-/// @param f  with model/residual and model/increments
+/// @param f  with model/predictor gp
 /// @param Z  features of the samples of `data`  [feature_dim x >= numFrames()]
 Transitions transitionsOf(const PredictionModel<double>& f, const Eigen::MatrixXd& Z,
                           const DataSet& data);

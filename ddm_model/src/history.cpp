@@ -22,19 +22,18 @@ std::vector<Eigen::Index> farthestPoints(const Eigen::Ref<const Eigen::MatrixXf>
 }
 
 Eigen::MatrixXf supportStates(const Eigen::Ref<const Eigen::MatrixXf>& Z, const DataSet& data,
-                              int memory, Eigen::Index max_count) {
+                              int order, Eigen::Index max_count) {
   const Eigen::Index dim = Z.rows(), motors = data.torqueDim(), num_frames = data.numFrames();
-  Eigen::MatrixXf states(memory * dim + (memory - 1) * motors, num_frames);
+  Eigen::MatrixXf states(order * dim + (order - 1) * motors, num_frames);
   Eigen::MatrixXf changes = Eigen::MatrixXf::Zero(dim, num_frames);  // z_t - z_{t-1}
   for (const Segment& segment : data.segments()) {
-    History x(memory, static_cast<int>(dim), static_cast<int>(motors));
+    History x(order, static_cast<int>(dim), static_cast<int>(motors));
     for (Eigen::Index t = segment.begin; t < segment.begin + segment.size; ++t) {
       x.observe(Z.col(t).cast<double>());
-      states.col(t).head(memory * dim) =
-          Eigen::Map<const Eigen::VectorXd>(x.features().data(), memory * dim).cast<float>();
-      states.col(t).tail((memory - 1) * motors) =
-          Eigen::Map<const Eigen::VectorXd>(x.torques().data(), (memory - 1) * motors)
-              .cast<float>();
+      states.col(t).head(order * dim) =
+          Eigen::Map<const Eigen::VectorXd>(x.features().data(), order * dim).cast<float>();
+      states.col(t).tail((order - 1) * motors) =
+          Eigen::Map<const Eigen::VectorXd>(x.torques().data(), (order - 1) * motors).cast<float>();
       if (t > segment.begin) changes.col(t) = Z.col(t) - Z.col(t - 1);
       x.apply(data.torques().col(t));
     }

@@ -16,11 +16,11 @@ namespace {
 
 constexpr char kMagic[] = "DDMMODEL";
 constexpr size_t kMagicSize = sizeof(kMagic) - 1;
-constexpr std::uint32_t kVersion = 6;
+constexpr std::uint32_t kVersion = 7;
 constexpr size_t kHeaderSize = kMagicSize + 4 + 8 + 4;
 
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "model files are little-endian");
-static_assert(sizeof(int) == 4 && sizeof(bool) == 1, "as in the file");
+static_assert(sizeof(int) == 4, "as in the file");
 
 std::uint32_t crc32(const char* bytes, size_t size) {
   boost::crc_32_type crc;
@@ -51,12 +51,7 @@ class Reader {
 
   template <class Value>
   void operator()(Value& value) {
-    if constexpr (std::is_same<Value, bool>::value) {
-      std::uint8_t flag;
-      (*this)(flag);
-      if (flag > 1) throw std::runtime_error("a flag is neither 0 nor 1");
-      value = flag == 1;
-    } else if constexpr (std::is_arithmetic<Value>::value) {
+    if constexpr (std::is_arithmetic<Value>::value) {
       std::memcpy(&value, take(sizeof(value)), sizeof(value));
     } else {
       std::uint64_t count;
@@ -102,8 +97,7 @@ struct Content {
     const auto each = [archive](auto&... values) { ((*archive)(values), ...); };
     each(options.pca_dim, options.feature_dim, options.order);
     each(options.encoder_widths, decoder_widths, options.predictor_widths);
-    each(options.residual, options.increments, options.max_torque, options.blur, options.delay);
-    each(options.predictor);
+    each(options.max_torque, options.blur, options.predictor);
     each(image_size, torque_dim);
     each(info.seed, info.trial, info.frames, info.v_r, info.v_p, info.feature_spread);
     each(support_states, info.config);
@@ -148,8 +142,8 @@ Ddm modelOf(Content content) {
   };
   requireWithin("image size", content.image_size, 16384);
   requireWithin("number of motors", content.torque_dim, 1000);
-  const auto state_dim = static_cast<size_t>(options.memory()) * options.feature_dim +
-                         static_cast<size_t>(options.memory() - 1) * content.torque_dim;
+  const auto state_dim = static_cast<size_t>(options.order) * options.feature_dim +
+                         static_cast<size_t>(options.order - 1) * content.torque_dim;
   if (content.support_states.size() % state_dim != 0) {
     throw std::runtime_error("its support states are no states");
   }

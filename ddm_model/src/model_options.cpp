@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <boost/algorithm/string/join.hpp>
-#include <utility>
 
 #include "ddm_model/per_motor.h"
 #include "ddm_model/schedule.h"
@@ -22,17 +21,9 @@ std::vector<std::string> ModelOptions::problems() const {
   model.requireWithin("pca_dim", pca_dim, 1, 1000);
   model.requireWithin("feature_dim", feature_dim, 1, 100);
   model.requireWithin("order", order, 1, 50);
-  model.requireWithin("delay", delay, 0, 50);
   requireWidths("encoder_widths", encoder_widths);
   model.require(predictor == "network" || predictor == "gp", "predictor", "be network or gp",
                 predictor);
-  for (const auto& [key, value] : {std::pair("residual", residual), {"increments", increments}}) {
-    model.require(predictor != "gp" || value, key, "be true where model/predictor is gp", "false");
-  }
-  model.require(predictor != "gp" || delay == 0, "delay",
-                "be 0 where model/predictor is gp: increase model/order instead, which shows f "
-                "earlier torques",
-                std::to_string(delay));
   requireWidths("predictor_widths", predictor_widths);
   model.require(areLimits(max_torque), "max_torque", "be > 0 and finite", limitsText(max_torque));
   return model.problems();
@@ -46,28 +37,10 @@ std::vector<std::string> TrainingOptions::problems() const {
   training.require(solver == "lbfgs" || solver == "kfac" || solver == "bfgs", "solver",
                    "be lbfgs, kfac or bfgs", solver);
   training.requireWithin("num_starts", num_starts, 1, 1000);
-  training.requireWithin("max_delay", max_delay, 0, 50);
-  training.requireWithin("selection_steps", selection_steps, 0, 1000);
-  training.requireWithin("selection_iterations", selection_iterations, 0, 1000000);
   training.requireWithin("prediction_steps", prediction_steps, 1, 100);
-  training.requireWithin("warm_up_iterations", warm_up_iterations, 0, 1000000);
   training.requireNotNegative("weight_decay", weight_decay);
-  const bool choice = num_starts > 1 || max_delay > 0;
-  const std::string no_choice =
-      "be 0 where training/num_starts is 1 and training/max_delay 0: there is nothing to choose "
-      "from";
-  training.require(selection_steps <= 0 || choice, "selection_steps", no_choice, selection_steps);
-  training.require(selection_iterations <= 0 || choice, "selection_iterations", no_choice,
-                   selection_iterations);
-  training.requireWithin("selection_frames", selection_frames, 0, 1000000000);
-  if (schedule == "v_r_only") {
-    training.require(selection_steps == 0 && prediction_steps == 1, "selection_steps",
-                     "be 0 and prediction_steps 1 where nothing is predicted: training/schedule",
-                     schedule);
-  }
   training.requireWithin("max_iterations", max_iterations, 1, 1000000);
   training.requireFraction("function_tolerance", function_tolerance);
-  training.requireWithin("lbfgs_rank", lbfgs_rank, 1, 1000);
   return training.problems();
 }
 

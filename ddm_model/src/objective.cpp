@@ -27,7 +27,7 @@ JointObjective<Scalar>::JointObjective(const Networks<Scalar>& networks, Trainin
   const Eigen::Index num_parts = std::max<Eigen::Index>(1, (num_images + kMaxPart - 1) / kMaxPart);
   const Eigen::Index part_size = (num_images + num_parts - 1) / num_parts;
   for (Eigen::Index begin = 0; begin < num_images; begin += part_size) {
-    const Eigen::Index first = std::max<Eigen::Index>(begin - f.memory(), 0);
+    const Eigen::Index first = std::max<Eigen::Index>(begin - f.order(), 0);
     parts_.push_back({first, begin, std::min(begin + part_size, num_images), {}, {}});
   }
   std::sort(data_.segments.begin(), data_.segments.end(),
@@ -36,7 +36,7 @@ JointObjective<Scalar>::JointObjective(const Networks<Scalar>& networks, Trainin
     if (segment.begin < 0 || segment.begin + segment.size > data_.torques.cols()) {
       throw std::invalid_argument("objective: a segment reaches beyond the frames");
     }
-    for (Eigen::Index i = f.memory(); i < segment.size; ++i) {
+    for (Eigen::Index i = f.order(); i < segment.size; ++i) {
       Part& part = parts_[(segment.begin + i) / part_size];
       part.targets.push_back(segment.begin + i - part.first);
       part.segment_end.push_back(segment.begin + segment.size - part.first);
@@ -59,8 +59,8 @@ void JointObjective<Scalar>::requirePredictions() const {
   if (numPredictions() > 0) return;
   throw std::invalid_argument(
       "no prediction can be learned: each segment of the data (frames without a gap, each with "
-      "its torque) needs more than model/order + model/delay = " +
-      std::to_string(networks_.prediction_model.memory()) + " frames");
+      "its torque) needs more than model/order = " +
+      std::to_string(networks_.prediction_model.order()) + " frames");
 }
 
 /// Allocates memory for predictions up to num_steps ahead.
@@ -71,7 +71,7 @@ void JointObjective<Scalar>::reserve(int num_steps) {
     lane.d_theta.resize(networks_.numParams());
     if (lane.residual.cols() >= columns) continue;
     lane.roll_out.reserve(kMaxPart, num_steps);
-    lane.d_features.resize(features_.rows(), kMaxPart + networks_.prediction_model.memory());
+    lane.d_features.resize(features_.rows(), kMaxPart + networks_.prediction_model.order());
     lane.residual.resize(data_.scores.rows(), columns);
   }
 }

@@ -1,26 +1,20 @@
-// One of several trainings, with its own initial weights and its own delay.
+// One of several trainings, with its own initial weights.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "restart.h"
 
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <memory>
 #include <sstream>
 
 namespace ddm {
 namespace {
 
-constexpr Eigen::Index kPart = 100;    // samples of a part
-constexpr Eigen::Index kMinParts = 4;  // for few samples, so that they come from several places
-
-/// @return terms for the comparison of restarts: predictions training/selection_steps ahead, or the
-///         terms that the schedule minimises
-Terms selectionTerms(const Schedule& schedule, const TrainingOptions& training) {
-  if (training.selection_steps == 0) return schedule.terms();
-  Terms terms{false, true};
-  terms.prediction_steps = training.selection_steps;
-  return terms;
-}
+constexpr Eigen::Index kFirstPart = 200;  // samples of the first part of the data
+constexpr Eigen::Index kPiece = 100;      // samples of a piece of a part
+constexpr Eigen::Index kMinPieces = 4;    // for few samples, so that they come from several places
+constexpr int kWarmUpIterations = 50;     // with k = 1, if k > 1
 
 /// Minimises one stage from the current weights of a restart.
 Minimum minimiseFrom(const Stage& stage, const TrainingOptions& training, Problem* problem,
@@ -34,30 +28,60 @@ Minimum minimiseFrom(const Stage& stage, const TrainingOptions& training, Proble
   return minimum;
 }
 
-/// Minimises all stages of one restart, and computes the error by which restarts are compared.
-void minimiseRestart(const Schedule& schedule, const TrainingOptions& training,
-                     const TrainingData<float>& data, Progress* progress, Restart* restart) {
-  Problem problem(restart->model, data);
-  const Terms selection = selectionTerms(schedule, training);
-  if (schedule.terms().v_p || selection.v_p) problem.objective.requirePredictions();
-  restart->initial_cost = problem.cost(restart->theta, schedule.terms());
-  const std::vector<Stage>& stages = schedule.stages;
-  for (size_t i = 0; i < stages.size(); ++i) {
-    const Minimum minimum = minimiseFrom(stages[i], training, &problem, progress, restart);
-    if (minimum.improved()) continue;
+/// @return stage with one prediction step that precedes a stage with several, because rollouts of an
+///         untrained f have no useful gradient. Without iterations for other stages
+Stage warmUpOf(Stage stage) {
+  const bool several = stage.terms.v_p && stage.terms.prediction_steps > 1;
+  stage.max_iterations = several ? std::min(kWarmUpIterations, stage.max_iterations) : 0;
+  stage.terms.prediction_steps = 1;
+  return stage;
+}
+
+/// @return last stage with its share of the iterations for a part of the data
+Stage lastStage(const RestartProblem& problem, size_t part) {
+  Stage stage = problem.schedule.stages.back();
+  const auto count = static_cast<int>(problem.parts.size()), i = static_cast<int>(part);
+  const int total = stage.max_iterations;
+  stage.max_iterations = total * (i + 1) / count - total * i / count;
+  return stage;
+}
+
+/// Minimises all stages of one restart, the last stage on the parts before numCompared().
+void minimiseRestart(const RestartProblem& problem, Progress* progress, Restart* restart) {
+  const std::vector<Stage>& stages = problem.schedule.stages;
+  const Terms terms = problem.schedule.terms();
+  const auto requireLowered = [&](size_t stage, const Minimum& minimum) {
+    if (minimum.improved()) return true;
     std::ostringstream text;
-    text << "training did not lower the objective: stage " << i + 1 << " of " << stages.size()
+    text << "training did not lower the objective: stage " << stage + 1 << " of " << stages.size()
          << " stays at " << minimum.initial_cost << " (" << minimum.message
          << "); check the bags, or leave the block training at its defaults";
     restart->message = text.str();
-    return;
+    return false;
+  };
+  auto networks = std::make_unique<Problem>(problem.model, problem.parts.front());
+  if (terms.v_p) networks->objective.requirePredictions();
+  restart->initial_cost = networks->cost(restart->theta, terms);
+  for (size_t i = 0; i + 1 < stages.size(); ++i) {
+    Problem all(problem.model, problem.parts.back());
+    if (!requireLowered(i, minimiseFrom(stages[i], problem.training, &all, progress, restart))) {
+      return;
+    }
   }
-  // Scale V_P to the number of samples, to compare delays: a longer delay leaves fewer predictions,
-  // but the same number of images and weights.
-  auto value = problem.objective.evaluate(restart->theta.cast<float>(), nullptr, selection);
-  const auto num_predictions = static_cast<double>(problem.objective.numPredictions());
-  if (selection.v_p) value.v_p *= static_cast<double>(data.torques.cols()) / num_predictions;
-  restart->error = problem.objective.weight() * value.of(selection);
+  for (size_t part = 0; part < problem.numCompared(); ++part) {
+    if (part > 0) networks = std::make_unique<Problem>(problem.model, problem.parts[part]);
+    const Stage warm_up = warmUpOf(stages.back());
+    if (part == 0 && warm_up.max_iterations > 0) {
+      minimiseFrom(warm_up, problem.training, networks.get(), progress, restart);
+    }
+    const Stage stage = lastStage(problem, part);
+    if (stage.max_iterations > 0) {
+      const Minimum minimum =
+          minimiseFrom(stage, problem.training, networks.get(), progress, restart);
+      if (part == 0 && !requireLowered(stages.size() - 1, minimum)) return;
+    }
+    restart->error = networks->cost(restart->theta, terms);
+  }
   if (!std::isfinite(restart->error)) {  // a rollout diverges
     restart->error = std::numeric_limits<double>::max();
   }
@@ -74,7 +98,7 @@ StageCallback Progress::nextStage() {
     iterations_ += so_far.iterations - before;
     before = so_far.iterations;
     if (!callback_) return true;
-    TrainingProgress progress;
+    TrainingProgress& progress = last_;
     progress.iteration = iterations_;
     progress.v_r = squared_scale_ * value.v_r;
     progress.v_p = squared_scale_ * value.v_p;
@@ -89,16 +113,47 @@ void Progress::endStage(int skipped_iterations) {
   if (cancelled_) throw Cancelled();
   const std::lock_guard<std::mutex> lock(mutex_);
   skipped_ += skipped_iterations;
+  last_.fraction_done = (skipped_ + iterations_) / max_iterations_;
 }
 
-void minimiseStages(const Schedule& schedule, const TrainingOptions& training,
-                    const TrainingData<float>& data, Progress* progress,
-                    std::vector<Restart>* restarts) {
+void Progress::repeat() {
+  if (cancelled_) throw Cancelled();
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (callback_ && !callback_(last_)) {
+    cancelled_ = true;
+    throw Cancelled();
+  }
+}
+
+RestartProblem::RestartProblem(const ModelOptions& model_options,
+                               const TrainingOptions& training_options,
+                               const TrainingData<float>& data)
+    : model(model_options), training(training_options), schedule(makeSchedule(training_options)) {
+  const Eigen::Index num_frames = data.torques.cols();
+  for (Eigen::Index count = kFirstPart; training.num_starts > 1 && count < num_frames; count *= 2) {
+    parts.push_back(evenPart(data, count, model.order));
+  }
+  parts.push_back(data);
+}
+
+double RestartProblem::maxIterations() const {
+  double before = warmUpOf(schedule.stages.back()).max_iterations;
+  for (size_t i = 0; i + 1 < schedule.stages.size(); ++i)
+    before += schedule.stages[i].max_iterations;
+  double compared = 0.0, rest = 0.0;
+  for (size_t part = 0; part < parts.size(); ++part) {
+    (part < numCompared() ? compared : rest) += lastStage(*this, part).max_iterations;
+  }
+  return training.num_starts * (before + compared) + rest;
+}
+
+void minimiseRestarts(const RestartProblem& problem, Progress* progress,
+                      std::vector<Restart>* restarts) {
   const auto count = static_cast<int>(restarts->size());
   std::vector<std::exception_ptr> errors(restarts->size());  // no exception may leave a thread
   const auto attempt = [&](int i) {
     try {
-      minimiseRestart(schedule, training, data, progress, &(*restarts)[i]);
+      minimiseRestart(problem, progress, &(*restarts)[i]);
     } catch (...) {
       errors[i] = std::current_exception();
     }
@@ -116,23 +171,13 @@ void minimiseStages(const Schedule& schedule, const TrainingOptions& training,
   }
 }
 
-void minimiseFinish(const Stage& finish, const TrainingOptions& training,
-                    const TrainingData<float>& data, Eigen::Index longer_than, Progress* progress,
-                    Restart* best) {
-  const Eigen::Index num_frames = data.torques.cols();
-  std::vector<Eigen::Index> counts;
-  for (Eigen::Index count = training.selection_frames; 0 < count && count < num_frames;) {
-    counts.push_back(count);
-    count *= 2;
-  }
-  counts.push_back(num_frames);
-  int rest = finish.max_iterations;
-  for (size_t i = 0; i < counts.size(); ++i) {
-    Problem problem(best->model, evenPart(data, counts[i], longer_than));
-    Stage stage = finish;
-    stage.max_iterations = rest / static_cast<int>(counts.size() - i);  // in equal shares
-    rest -= stage.max_iterations;
-    if (stage.max_iterations > 0) minimiseFrom(stage, training, &problem, progress, best);
+void finish(const RestartProblem& problem, Progress* progress, Restart* best) {
+  for (size_t part = problem.numCompared(); part < problem.parts.size(); ++part) {
+    Problem networks(problem.model, problem.parts[part]);
+    const Stage stage = lastStage(problem, part);
+    if (stage.max_iterations > 0) {
+      minimiseFrom(stage, problem.training, &networks, progress, best);
+    }
   }
 }
 
@@ -140,16 +185,16 @@ TrainingData<float> evenPart(const TrainingData<float>& data, Eigen::Index max_f
                              Eigen::Index longer_than) {
   const Eigen::Index num_frames = data.torques.cols();
   if (num_frames <= max_frames) return data;
-  // Fewer than 100 samples could not be spread over several places in parts of 100.
+  // Fewer than 100 samples could not be spread over several places in pieces of 100.
   const Eigen::Index length =
-      max_frames >= kPart ? kPart : std::max(longer_than + 1, max_frames / kMinParts);
+      max_frames >= kPiece ? kPiece : std::max(longer_than + 1, max_frames / kMinPieces);
   std::vector<Segment> chosen;
   Eigen::Index seen = 0, taken = 0;
   for (const Segment& segment : data.segments) {
     for (Eigen::Index at = 0; at < segment.size; at += length) {
       const Segment piece{segment.begin + at, std::min(length, segment.size - at)};
       seen += piece.size;
-      // A part is kept if the share of kept samples so far stays at most max_frames / num_frames.
+      // A piece is kept if the share of kept samples so far stays at most max_frames / num_frames.
       const bool due = (taken + piece.size) * num_frames <= seen * max_frames;
       if (!due || piece.size <= longer_than) continue;
       taken += piece.size;

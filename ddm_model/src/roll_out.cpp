@@ -35,8 +35,7 @@ void RollOut<Scalar>::fillRegressors(const Eigen::Ref<const Matrix>& Z,
           lag < step ? &predicted_[step - 1 - lag].coeffRef(0, i) : &Z.coeffRef(0, frame);
       h = std::copy_n(z, f_.featureDim(), h);
       for (int motor = 0; motor < f_.torqueDim(); ++motor) {
-        const double u =
-            U(motor, std::min(frame - f_.delay(), last_torque)) / f_.maxTorque()[motor];
+        const double u = U(motor, std::min(frame, last_torque)) / f_.maxTorque()[motor];
         *h++ = static_cast<Scalar>(u);
       }
     }
@@ -75,7 +74,7 @@ void RollOut<Scalar>::backward(const Scalar* theta_p, const Targets& targets, in
       }
       for (int motor = 0; motor < f_.torqueDim(); ++motor, ++d_h) {
         if (d_U == nullptr) continue;
-        (*d_U)(motor, frame - f_.delay()) += static_cast<double>(*d_h) / f_.maxTorque()[motor];
+        (*d_U)(motor, frame) += static_cast<double>(*d_h) / f_.maxTorque()[motor];
       }
     }
   }

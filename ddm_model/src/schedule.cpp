@@ -15,11 +15,11 @@ const std::map<std::string, Schedule>& schedules() {
   const Stage predictor{{false, true}, Stage::Free::kPredictor};
   const Stage v_p_only{{false, true}, Stage::Free::kAll};
   static const std::map<std::string, Schedule> schedules = {
-      {"joint", {true, {joint}, {}}},
-      {"sequential", {true, {auto_encoder, predictor}, {}}},
-      {"v_p_only", {true, {v_p_only}, {}}},
-      {"v_r_only", {true, {auto_encoder}, {}}},
-      {"joint_random_init", {false, {joint}, {}}}};
+      {"joint", {true, {joint}}},
+      {"sequential", {true, {auto_encoder, predictor}}},
+      {"v_p_only", {true, {v_p_only}}},
+      {"v_r_only", {true, {auto_encoder}}},
+      {"joint_random_init", {false, {joint}}}};
   return schedules;
 }
 
@@ -44,24 +44,11 @@ std::vector<std::string> scheduleNames() {
 
 Schedule makeSchedule(const TrainingOptions& training) {
   Schedule schedule = schedules().at(training.schedule);
-  std::vector<Stage> stages;
-  for (Stage stage : schedule.stages) {
+  for (Stage& stage : schedule.stages) {
     stage.terms.weight_decay = training.weight_decay;
-    stage.max_iterations = training.max_iterations;
-    if (stage.terms.v_p && training.prediction_steps > 1 && training.warm_up_iterations > 0) {
-      stages.push_back(stage);
-      stages.back().max_iterations = training.warm_up_iterations;
-    }
     if (stage.terms.v_p) stage.terms.prediction_steps = training.prediction_steps;
-    stages.push_back(stage);
+    stage.max_iterations = training.max_iterations;
   }
-  const int rest = training.max_iterations - training.selection_iterations;
-  if (training.selection_iterations > 0 && rest > 0) {
-    schedule.finish = stages.back();
-    schedule.finish->max_iterations = rest;
-    stages.back().max_iterations = training.selection_iterations;
-  }
-  schedule.stages = stages;
   return schedule;
 }
 

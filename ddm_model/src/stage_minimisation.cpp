@@ -29,6 +29,11 @@ Eigen::MatrixXf inverseRoot(const Eigen::MatrixXd& matrix) {
 /// Iterations of L-BFGS between computations of the Kronecker factors; 25 to 100 do equally well.
 constexpr int kRefresh = 50;
 
+// Steps that L-BFGS stores. More steps come closer to BFGS, and iterations take longer. Few suffice
+// between two computations of the Kronecker factors.
+constexpr int kLbfgsRank = 20;
+constexpr int kKfacRank = 10;
+
 /// Range of the free parameters in theta, and the layers that they belong to.
 struct Range {
   Eigen::Index begin;
@@ -152,7 +157,7 @@ Minimum minimiseStage(const Stage& stage, const TrainingOptions& training,
   std::mt19937_64 rng(1);  // draws signs, see JointObjective::factors()
   const int cap = stage.max_iterations;
   MinimiseOptions options;
-  options.lbfgs_rank = training.solver == "bfgs" ? 0 : training.lbfgs_rank;
+  options.lbfgs_rank = training.solver == "bfgs" ? 0 : kfac ? kKfacRank : kLbfgsRank;
   options.function_tolerance = training.function_tolerance;
   options.gradient_tolerance = 1e-9;
   Minimum total;

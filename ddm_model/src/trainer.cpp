@@ -22,23 +22,6 @@ namespace {
 
 constexpr Eigen::Index kMaxSupportStates = 1000;
 
-/// @return the largest delay that leaves a prediction, at most training/max_delay [samples]
-int largestDelayOf(const DataSet& data, const ModelOptions& model,
-                   const TrainingOptions& training) {
-  Eigen::Index longest = 0;
-  for (const Segment& segment : data.segments()) longest = std::max(longest, segment.size);
-  const auto possible = static_cast<int>(longest) - 1 - model.order;
-  return std::max(model.delay, std::min(largestDelay(model, training), possible));
-}
-
-/// @return cap on the iterations of the whole training
-double maxIterations(const Schedule& schedule, std::size_t num_restarts) {
-  const auto add = [](int sum, const Stage& stage) { return sum + stage.max_iterations; };
-  const int stages = std::accumulate(schedule.stages.begin(), schedule.stages.end(), 0, add);
-  return static_cast<double>(num_restarts) * stages +
-         (schedule.finish ? schedule.finish->max_iterations : 0);
-}
-
 /// Adds the statistics of the best restart to the origin of a model.
 ModelInfo infoOf(const Restart& best, Problem* problem, const DataSet& data, double squared_scale,
                  ModelInfo info) {
@@ -55,7 +38,6 @@ TrainingResult trainUnlessCancelled(const DataSet& data, const ModelOptions& mod
                                     const TrainingOptions& training, const ModelInfo& info,
                                     const TrainingCallback& callback) {
   const Networks<double> networks(model, data.torqueDim());  // eqs. (2), (3a), (3b)
-  const Schedule schedule = makeSchedule(training);
 
   // Sec. 4: the encoder sees the leading principal components of all images and the goal image.
   const auto check = [&] {
@@ -66,58 +48,47 @@ TrainingResult trainUnlessCancelled(const DataSet& data, const ModelOptions& mod
   const double squared_scale = 1.0 / (static_cast<double>(pca.scale) * pca.scale);
 
   // Sec. 2.3, "Initialization": layer-wise PCA initialises the auto-encoder. Deviation: there are
-  // several restarts, in which f has other random weights, each with every delay that is tried. The
-  // paper has a single training with delay 0.
-  const int largest_delay = largestDelayOf(data, model, training);
+  // several restarts, in which f has other random weights. The paper has a single training.
+  const RestartProblem restart_problem(model, training, scores);
+  const Schedule& schedule = restart_problem.schedule;
   std::mt19937_64 rng = randomStream({info.seed, info.trial}, StreamRole::kInitialisation);
   std::vector<Restart> restarts;
   for (int i = 0; i < training.num_starts; ++i) {
-    const Eigen::VectorXd theta =
-        initialTheta(networks, scores.scores.cast<double>(), schedule.pca_start, &rng);
-    for (int delay = model.delay; delay <= largest_delay; ++delay) {
-      restarts.push_back({model, theta});
-      restarts.back().model.delay = delay;
-    }
+    restarts.push_back(
+        {initialTheta(networks, scores.scores.cast<double>(), schedule.pca_start, &rng)});
   }
 
   // Eq. (5a): minimises V_R + V_P of eqs. (5b, 5c), or the terms of the schedule.
-  Progress progress(callback, maxIterations(schedule, restarts.size()), squared_scale);
-  const Eigen::Index longer_than = model.order + largest_delay;
-  const bool on_part = schedule.finish && training.selection_frames > 0;
-  minimiseStages(schedule, training,
-                 on_part ? evenPart(scores, training.selection_frames, longer_than) : scores,
-                 &progress, &restarts);
+  Progress progress(callback, restart_problem.maxIterations(), squared_scale);
+  minimiseRestarts(restart_problem, &progress, &restarts);
 
-  // Keeps the best restart, which may continue alone.
+  // Keeps the best restart, which continues alone.
   Restart& best =
       *std::min_element(restarts.begin(), restarts.end(),
                         [](const Restart& a, const Restart& b) { return a.error < b.error; });
   TrainingResult result;
-  if (std::isfinite(best.error) && schedule.finish) {
-    minimiseFinish(*schedule.finish, training, scores, longer_than, &progress, &best);
-  }
+  if (std::isfinite(best.error)) finish(restart_problem, &progress, &best);
   for (const Restart& restart : restarts) {
     result.iterations += restart.iterations;
     result.evaluations += restart.evaluations;
   }
   if (std::isfinite(best.error)) {
-    Problem problem(best.model, scores);
+    ModelOptions trained_model = model;
+    Problem problem(model, scores);
     const double final_cost = problem.cost(best.theta, schedule.terms());
     ModelInfo trained = infoOf(best, &problem, data, squared_scale, info);
     if (std::isfinite(trained.v_r + trained.v_p)) {
       const Eigen::MatrixXf Z = problem.objective.features();
       if (model.predictor == "gp") {
-        const TrainingProgress end{result.iterations, trained.v_r, trained.v_p, 0.0, 1.0};
-        const auto report = [&] {
-          if (callback && !callback(end)) throw Cancelled();
-        };
         std::mt19937_64 draw = randomStream({info.seed, info.trial}, StreamRole::kGpSamples);
-        replaceByGp(Z.cast<double>(), data, &draw, report, &best.model, &best.theta);
+        replaceByGp(
+            Z.cast<double>(), data, &draw, [&progress] { progress.repeat(); }, &trained_model,
+            &best.theta);
       }
-      trained.support_states = supportStates(Z, data, best.model.memory(), kMaxSupportStates);
+      trained.support_states = supportStates(Z, data, trained_model.order, kMaxSupportStates);
       result.initial_cost = best.initial_cost;
       result.final_cost = final_cost;
-      result.model.emplace(best.model, data.imageSize(), data.torqueDim(), pca, best.theta,
+      result.model.emplace(trained_model, data.imageSize(), data.torqueDim(), pca, best.theta,
                            data.goal(), trained);
     } else {
       std::ostringstream text;

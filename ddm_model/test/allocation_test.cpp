@@ -14,11 +14,11 @@ namespace {
 
 using testing::allocationsOf;
 
-class Allocation : public ::testing::TestWithParam<bool> {};
+class Allocation : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(Allocation, AnEvaluationTakesNoMemory) {
   ModelOptions options;
-  options.residual = options.increments = GetParam();
+  options.predictor = GetParam();
   const Networks<float> networks(options, 1);
   TrainingData<float> data;
   data.scores = testing::randomMatrix(options.pca_dim, 301, 1).cast<float>();
@@ -57,7 +57,7 @@ TEST(ObjectiveMemory, LackOfMemoryInAThreadIsAnExceptionOfTheEvaluation) {
   testing::refused_allocation = -1;
 }
 
-INSTANTIATE_TEST_SUITE_P(WithAndWithoutResidualAndIncrements, Allocation, ::testing::Bool());
+INSTANTIATE_TEST_SUITE_P(BothPredictors, Allocation, ::testing::Values("network", "gp"));
 
 }  // namespace
 }  // namespace ddm

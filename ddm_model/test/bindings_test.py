@@ -12,7 +12,7 @@ except ImportError:
     pytest.skip("the Python bindings are not built", allow_module_level=True)
 
 
-@pytest.mark.parametrize("options", ["", ", residual: true, order: 3", ", delay: 2"])
+@pytest.mark.parametrize("options", ["", ", predictor: gp, order: 3"])
 def test_the_model_of_c_plus_plus_and_that_of_numpy_agree(tmp_path, options):
     bag = str(tmp_path / "a.bag")
     images, torques = toy_robot.write_bag(bag)
@@ -29,11 +29,11 @@ def test_the_model_of_c_plus_plus_and_that_of_numpy_agree(tmp_path, options):
     np.testing.assert_allclose(model.goal_feature, plain.goal_feature, atol=1e-6)
     grey = np.clip(255.0 * plain.decode(features[:5]), 0.0, 255.0)
     assert np.max(np.abs(model.decode(features[:5]) - grey)) < 0.51
-    n, memory = plain.options["order"], plain.options["order"] + plain.options["delay"]
-    np.testing.assert_allclose(model.predict(features[:n], torques[:memory]), plain.predict(features[:n], torques[:memory]), atol=1e-6)
-    future = model.rollout(features[:n], torques[:memory + 9])
+    n = plain.options["order"]
+    np.testing.assert_allclose(model.predict(features[:n], torques[:n]), plain.predict(features[:n], torques[:n]), atol=1e-6)
+    future = model.rollout(features[:n], torques[:n + 9])
     assert future.shape == (10, plain.options["feature_dim"])
-    np.testing.assert_allclose(future, plain.roll_out(features[:n], torques[:memory + 9]), atol=1e-6)
+    np.testing.assert_allclose(future, plain.roll_out(features[:n], torques[:n + 9]), atol=1e-6)
 
 
 def test_a_damaged_model_is_refused_as_by_the_numpy_reader(tmp_path):

@@ -185,7 +185,6 @@ TEST(SelectOrder, TakesASmallEffectForRealIfThereAreManyTransitions) {
 TEST(Transitions, StayWithinSegments) {
   ModelOptions options;
   options.order = 2;
-  options.residual = options.increments = true;
   options.predictor = "gp";
   const PredictionModel<double> f(options, 1);
   DataSet data(2, 1);

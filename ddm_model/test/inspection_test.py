@@ -55,8 +55,8 @@ class Made:
         for seed, bag in enumerate(bags):
             toy_robot.write_bag(bag, num_frames=200, seed=seed + 1)
         self.unseen, self.report = bags[2], str(folder / "report")
-        self.model = toy_robot.train(folder, bags[:2], ", residual: true, increments: true",
-                                     ", num_starts: 4, selection_steps: 4, prediction_steps: 4")
+        self.model = toy_robot.train(folder, bags[:2], ", predictor: gp",
+                                     ", num_starts: 4, prediction_steps: 4")
         self.code, self.words = toy_robot.call("inspect", "--model", self.model, "--out", self.report, "--steps", 6, self.unseen)
 
 

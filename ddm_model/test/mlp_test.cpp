@@ -109,8 +109,7 @@ TEST(PredictionModel, TakesItsRegressorNewestFirstWithEachTorqueAfterItsFeature)
   ModelOptions options;
   options.feature_dim = 3;
   options.order = 4;
-  options.residual = true;
-  options.increments = true;
+  options.predictor = "gp";
   const PredictionModel<double> f(options, /*torque_dim=*/2);
   ASSERT_EQ(f.regressorDim(), 4 * (3 + 2));
   const Eigen::VectorXd theta_p = Eigen::VectorXd::Zero(f.network().numParams());
@@ -123,7 +122,7 @@ TEST(PredictionModel, TakesItsRegressorNewestFirstWithEachTorqueAfterItsFeature)
   Eigen::MatrixXd predicted(3, 1);
   Mlp<double>::Tape tape;
   f.forward(theta_p.data(), h, &tape, predicted);
-  EXPECT_EQ(h, expected) << "increments of features, and torques as they were";
+  EXPECT_EQ(h, expected) << "differences of features, and torques as they were";
   EXPECT_EQ(predicted, newest) << "a network of zeros changes nothing";
 }
 

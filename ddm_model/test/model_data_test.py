@@ -13,7 +13,7 @@ NUM_PIXELS = SIZE * SIZE
 class SumModel:
     """A feature is the one before it and the torque; an image has one pixel, y = z / 10."""
 
-    options = {"order": 2, "delay": 1}
+    options = {"order": 3}
     arrays = {"image_size": 1, "blur": np.eye(1)}
 
     @staticmethod

@@ -58,9 +58,7 @@ TEST(ModelFile, KeepsEveryOptionALimitForEachMotorAndSupportStates) {
   ModelOptions options = one.options();
   options.max_torque = {4.0, 2.0};
   options.blur = 1.5;
-  options.delay = 1;
-  options.residual = true;
-  options.increments = true;
+  options.order = 3;
   ModelInfo info = one.info();
   info.support_states = testing::randomMatrix(3 * 2 + 2 * 2, 9, 5).cast<float>();
   Pca pca = one.pca();
@@ -73,8 +71,7 @@ TEST(ModelFile, KeepsEveryOptionALimitForEachMotorAndSupportStates) {
   EXPECT_EQ(back.options().max_torque, options.max_torque);
   EXPECT_EQ(back.predictionModel().maxTorque(), Eigen::Vector2d(4.0, 2.0));
   EXPECT_EQ(back.options().blur, options.blur);
-  EXPECT_EQ(back.options().delay, 1);
-  EXPECT_TRUE(back.options().residual && back.options().increments);
+  EXPECT_EQ(back.options().order, 3);
   EXPECT_EQ(back.info().support_states, info.support_states);
   EXPECT_EQ(back.encode(testing::toyImage(0.5)), model.encode(testing::toyImage(0.5)));
   EXPECT_EQ(serialiseModel(back), bytes);
@@ -83,7 +80,6 @@ TEST(ModelFile, KeepsEveryOptionALimitForEachMotorAndSupportStates) {
 TEST(ModelFile, KeepsAGaussianProcessAndRefusesAPartOfACentre) {
   const Ddm one = toyModel();
   ModelOptions options = one.options();
-  options.residual = options.increments = true;
   options.predictor = "gp";
   const Eigen::Index num_params = Networks<double>(options, 1, /*num_centres=*/3).numParams();
   const auto with = [&](Eigen::Index count) {
@@ -119,10 +115,10 @@ TEST(ModelFile, AnyByteThatIsDamagedIsNoticed) {
 
 TEST(ModelFile, AnotherVersionIsRefusedWithBothVersionsAndTheRemedy) {
   std::string bytes = serialiseModel(toyModel());
-  for (const char version : {5, 7}) {
+  for (const char version : {6, 8}) {
     bytes[kVersionAt] = version;
     EXPECT_TRUE(
-        isRefused(bytes, {"version " + std::to_string(version), "reads version 6", "train it"}));
+        isRefused(bytes, {"version " + std::to_string(version), "reads version 7", "train it"}));
   }
 }
 
@@ -144,9 +140,9 @@ TEST(ModelFile, ContentThatMakesNoSenseIsRefusedThoughItsChecksumFits) {
   EXPECT_TRUE(isRefused(withNumber(0, -1), {"no sense", "model/pca_dim"}));
   EXPECT_TRUE(isRefused(withNumber(8, 0), {"no sense", "model/order"}));
   EXPECT_TRUE(isRefused(withNumber(12, 0x7fffffff), {"no sense", "longer"}));
-  EXPECT_EQ(withNumber(93, testing::kToySize), bytes);  // the image size follows the options
-  EXPECT_TRUE(isRefused(withNumber(93, 0), {"no sense", "image size", "[1, 16384]", "got 0"}));
-  EXPECT_TRUE(isRefused(withNumber(97, 1001), {"no sense", "motors", "[1, 1000]", "got 1001"}));
+  EXPECT_EQ(withNumber(87, testing::kToySize), bytes);  // the image size follows the options
+  EXPECT_TRUE(isRefused(withNumber(87, 0), {"no sense", "image size", "[1, 16384]", "got 0"}));
+  EXPECT_TRUE(isRefused(withNumber(91, 1001), {"no sense", "motors", "[1, 1000]", "got 1001"}));
 }
 
 TEST(ModelFile, SupportStatesThatAreNoStatesAreRefused) {

@@ -67,7 +67,7 @@ JointObjective<double>::Value slowValue(const Networks<double>& nets,
         Eigen::VectorXd h(0);
         for (int lag = 0; lag < n; ++lag) {
           Eigen::VectorXd feature = path[path.size() - 1 - static_cast<size_t>(lag)];
-          if (form.increments && lag > 0) {
+          if (form.featureDifferences() && lag > 0) {
             feature = path[path.size() - static_cast<size_t>(lag)] - feature;
           }
           const Eigen::VectorXd torque =
@@ -77,7 +77,7 @@ JointObjective<double>::Value slowValue(const Networks<double>& nets,
           h = longer;
         }
         Eigen::VectorXd predicted = applied(nets.f(), nets.predictorOf(theta.data()), h);
-        if (form.residual) predicted += path.back();
+        if (form.featureDifferences()) predicted += path.back();
         value.v_p +=
             (data.scores.col(t + j) - decoded(predicted)).squaredNorm() / terms.prediction_steps;
         path.push_back(predicted);
@@ -95,16 +95,13 @@ DifferentiableFunction singleTerm(JointObjective<double>* objective, Terms terms
   };
 }
 
-/// f without and with each of its flags.
+/// A network f for features and for their differences.
 std::vector<ModelOptions> formsOfF(int order) {
   std::vector<ModelOptions> forms;
-  for (const bool residual : {false, true}) {
-    for (const bool increments : {false, true}) {
-      forms.push_back(tinyOptions());
-      forms.back().order = order;
-      forms.back().residual = residual;
-      forms.back().increments = increments;
-    }
+  for (const char* predictor : {"network", "gp"}) {
+    forms.push_back(tinyOptions());
+    forms.back().order = order;
+    forms.back().predictor = predictor;
   }
   return forms;
 }
@@ -139,8 +136,7 @@ TEST(JointObjective, GradientOfSeveralStepsMatchesDifferences) {
       terms.prediction_steps = 4;
       EXPECT_TRUE(testing::gradientMatches(singleTerm(&objective, terms),
                                            0.5 * randomMatrix(nets.numParams(), 1, 3)))
-          << "order " << order << ", residual " << options.residual << ", increments "
-          << options.increments;
+          << "order " << order << ", " << options.predictor;
     }
   }
 }

@@ -221,7 +221,7 @@ TEST_F(OtherBags, ALagOfTheRecorderDoesNotMoveTorquesWithoutStamps) {
   writeTorquePerFrame([](double, double u) { return floatOf(u); }, /*lag=*/0.5);
   close();
   expectTorques();
-  EXPECT_TRUE(notes({{"0.5 s after their stamps", "training/max_delay to 5"}}));
+  EXPECT_TRUE(notes({{"0.5 s after their stamps", "model/order by 5"}}));
 }
 
 TEST_F(OtherBags, WhereAClockCannotBeTrustedRecordingTimesCount) {

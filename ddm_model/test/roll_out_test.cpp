@@ -20,14 +20,13 @@ const std::vector<Eigen::Index> kTargets = {4, 5, 8};
 
 RollOut<double>::Targets targets() { return {kTargets.data(), 3}; }
 
-/// n, d, and whether f sees and predicts differences of features.
-class RollOutOfEachForm : public ::testing::TestWithParam<std::tuple<int, int, bool>> {
+/// n, and model/predictor.
+class RollOutOfEachForm : public ::testing::TestWithParam<std::tuple<int, const char*>> {
  protected:
   static ModelOptions options() {
     ModelOptions options;
     options.order = std::get<0>(GetParam());
-    options.delay = std::get<1>(GetParam());
-    options.residual = options.increments = std::get<2>(GetParam());
+    options.predictor = std::get<1>(GetParam());
     options.max_torque = {1.5, 0.5};
     return options;
   }
@@ -39,16 +38,16 @@ class RollOutOfEachForm : public ::testing::TestWithParam<std::tuple<int, int, b
       Eigen::VectorXd h(f_.regressorDim());
       for (int lag = 0; lag < f_.order(); ++lag) {
         Eigen::VectorXd z = path.col(frame - 1 - lag);
-        if (options().increments && lag > 0) z = path.col(frame - lag) - z;
+        if (options().featureDifferences() && lag > 0) z = path.col(frame - lag) - z;
         h.segment(4 * lag, 2) = z;
-        const Eigen::Vector2d u = U_.col(frame - 1 - lag - f_.delay());
+        const Eigen::Vector2d u = U_.col(frame - 1 - lag);
         h.segment(4 * lag + 2, 2) << u[0] / 1.5, u[1] / 0.5;
       }
       Mlp<double>::Tape tape;
       f_.network().forward(theta_p_.data(), h, &tape);
       const Eigen::VectorXd last = path.col(frame - 1);
       path.col(frame) = tape.output() + offset_;
-      if (options().residual) path.col(frame) += last;
+      if (options().featureDifferences()) path.col(frame) += last;
     }
     return path.middleCols(target, kSteps);
   }
@@ -118,7 +117,6 @@ class RollOutOfAGaussianProcess : public ::testing::Test {
   static ModelOptions options() {
     ModelOptions options;
     options.order = 2;
-    options.residual = options.increments = true;
     options.max_torque = {1.5, 0.5};
     options.predictor = "gp";
     return options;
@@ -186,9 +184,9 @@ TEST_F(RollOutOfAGaussianProcess, GradientMatchesDifferencesForFeaturesAndTorque
   EXPECT_TRUE(testing::gradientMatches(weighted_sum, x));
 }
 
-INSTANTIATE_TEST_SUITE_P(OrdersDelaysAndForms, RollOutOfEachForm,
-                         ::testing::Combine(::testing::Values(1, 3), ::testing::Values(0, 1),
-                                            ::testing::Bool()));
+INSTANTIATE_TEST_SUITE_P(OrdersAndForms, RollOutOfEachForm,
+                         ::testing::Combine(::testing::Values(1, 3),
+                                            ::testing::Values("network", "gp")));
 
 }  // namespace
 }  // namespace ddm

@@ -18,25 +18,22 @@ TEST(Schedule, JointRandomInitIsJointWithoutThePcaStart) {
   EXPECT_EQ(schedule.stages[0].free, Stage::Free::kAll);
 }
 
-TEST(Schedule, PredictionsOfSeveralStepsAreWarmedUpByOne) {
+TEST(Schedule, EachStageHasTheOptionsOfTheTraining) {
   TrainingOptions training;
   training.schedule = "sequential";
-  training.warm_up_iterations = 70;
   training.max_iterations = 900;
   training.prediction_steps = 5;
   training.weight_decay = 2.0;
   const Schedule schedule = makeSchedule(training);
-  ASSERT_EQ(schedule.stages.size(), 3U);  // the auto-encoder predicts nothing
-  EXPECT_EQ(schedule.stages[0].max_iterations, 900);
-  EXPECT_EQ(schedule.stages[1].max_iterations, 70);
-  EXPECT_EQ(schedule.stages[1].terms.prediction_steps, 1);
-  EXPECT_EQ(schedule.stages[2].max_iterations, 900);
-  EXPECT_EQ(schedule.stages[2].terms.prediction_steps, 5);
-  for (const Stage& stage : schedule.stages) EXPECT_EQ(stage.terms.weight_decay, 2.0);
+  ASSERT_EQ(schedule.stages.size(), 2U);
+  EXPECT_EQ(schedule.stages[0].terms.prediction_steps, 1);  // the auto-encoder predicts nothing
+  EXPECT_EQ(schedule.stages[1].terms.prediction_steps, 5);
+  for (const Stage& stage : schedule.stages) {
+    EXPECT_EQ(stage.terms.weight_decay, 2.0);
+    EXPECT_EQ(stage.max_iterations, 900);
+  }
   const Terms all = schedule.terms();
   EXPECT_TRUE(all.v_r && all.v_p && all.prediction_steps == 5 && all.weight_decay == 2.0);
-  training.warm_up_iterations = 0;
-  EXPECT_EQ(makeSchedule(training).stages.size(), 2U);
 }
 
 }  // namespace

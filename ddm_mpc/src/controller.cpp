@@ -44,7 +44,10 @@ void EpsilonGreedy::drawTorque() {
     const double limit = options_.max_torque[i];
     held_torque_[i] = std::uniform_real_distribution<double>(-limit, limit)(rng_);
   }
-  held_steps_left_ = options_.hold_steps;
+  held_steps_left_ = 1;
+  if (options_.hold_steps > 1) {  // otherwise nothing is drawn
+    held_steps_left_ = std::uniform_int_distribution<int>(1, options_.hold_steps)(rng_);
+  }
 }
 
 /// Encodes the image, z_t = g^-1(y_t) (eq. 3a), and adds z_t to the controller state x_t (eq. 8).
@@ -101,7 +104,7 @@ MpcPolicy::MpcPolicy(std::shared_ptr<const Ddm> model, const MpcOptions& options
       offset_gain_(options.offset_gain),
       time_budget_(options.time_budget),
       z_ref_(model_->hasGoal() ? model_->goalFeature() : Eigen::VectorXd()),
-      x_(model_->options().memory(), model_->featureDim(), model_->torqueDim()),
+      x_(model_->options().order, model_->featureDim(), model_->torqueDim()),
       offset_(Eigen::VectorXd::Zero(model_->featureDim())),
       cost_(makePlanCost(*model_, options)),
       planner_(&cost_, options) {}

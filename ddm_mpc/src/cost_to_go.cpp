@@ -40,7 +40,7 @@ double spacing(const Eigen::MatrixXd& points) {
 std::vector<Eigen::MatrixXd> predictions(const Ddm& model, const Eigen::MatrixXd& X,
                                          const Eigen::VectorXd& u, int num_steps) {
   const Eigen::Index dim = model.featureDim(), motors = model.torqueDim(), M = X.cols();
-  const Eigen::Index n = model.options().memory();
+  const Eigen::Index n = model.options().order;
   const Eigen::Index length = n + num_steps;  // samples of a support state in Z and U, oldest first
   Eigen::MatrixXd Z = Eigen::MatrixXd::Zero(dim, M * length);
   Eigen::MatrixXd U = u.replicate(1, M * length);
@@ -69,7 +69,7 @@ void CostToGo::predictOutcomes() {
   const Eigen::MatrixXd X = model_->info().support_states.cast<double>();
   const Eigen::Index dim = model_->featureDim(), M = X.cols();
   const Eigen::MatrixXd Z = X.topRows(dim);
-  const Eigen::MatrixXd changes = model_->options().memory() > 1
+  const Eigen::MatrixXd changes = model_->options().order > 1
                                       ? Eigen::MatrixXd(Z - X.middleRows(dim, dim))
                                       : Eigen::MatrixXd::Zero(dim, M);
   // If nothing moves, or a state has a single feature, the states differ only in their features.

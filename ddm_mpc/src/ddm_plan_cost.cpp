@@ -24,7 +24,7 @@ DdmPlanCost::DdmPlanCost(const Ddm& model, int horizon, double control_weight, T
       search_(f_) {
   eigen_assert(horizon >= 1);
   roll_out_.reserve(/*num_targets=*/1, horizon);
-  torques_.setZero(f_.torqueDim(), f_.memory() - 1 + horizon);
+  torques_.setZero(f_.torqueDim(), f_.order() - 1 + horizon);
   if (const SaturatingCost* saturating = saturatingCost()) {
     const double width = saturating->width();
     control_weight_ /= 2.0 * width * width * f_.maxTorque().array().square();
@@ -53,16 +53,16 @@ void DdmPlanCost::setGoal(const Eigen::VectorXd& goal_feature, bool exploring) {
 void DdmPlanCost::setProblem(const History& x, const Eigen::VectorXd& goal_feature,
                              const Eigen::VectorXd& offset) {
   eigen_assert(!x.empty() && x.features().rows() == f_.featureDim() &&
-               x.features().cols() == f_.memory() && x.torques().rows() == f_.torqueDim() &&
+               x.features().cols() == f_.order() && x.torques().rows() == f_.torqueDim() &&
                offset.size() == f_.featureDim());
   features_ = x.features().rowwise().reverse();
-  torques_.leftCols(f_.memory() - 1) = x.torques().rowwise().reverse();
+  torques_.leftCols(f_.order() - 1) = x.torques().rowwise().reverse();
   setGoal(goal_feature, exploring_);
   offset_ = offset;
 }
 
 void DdmPlanCost::rollOut(const Eigen::Ref<const Eigen::MatrixXd>& U, int num_steps) {
-  const Eigen::Index target = f_.memory();  // index of z_1 after the features of x_0
+  const Eigen::Index target = f_.order();  // index of z_1 after the features of x_0
   torques_.rightCols(horizon_) = U;
   roll_out_.forward(theta_p_, features_, torques_, RollOut<double>::Targets(&target, 1), num_steps,
                     &offset_);
@@ -116,12 +116,12 @@ double DdmPlanCost::evaluate(const Eigen::Ref<const Eigen::MatrixXd>& U, Eigen::
     roll_out_.dPredicted(horizon_ - 1) += d_last;
     if (horizon_ > 1) roll_out_.dPredicted(horizon_ - 2) += d_before;
   }
-  const Eigen::Index target = f_.memory();
+  const Eigen::Index target = f_.order();
   const RollOut<double>::Targets targets(&target, 1);
   for (int step = horizon_ - 1; step >= 0; --step) {
     stepCost(roll_out_.predicted(step), U.col(step), &d_step_, &d_torque_);
     roll_out_.dPredicted(step) += d_step_;
-    d_torques_.col(f_.memory() - 1 + step) += d_torque_;
+    d_torques_.col(f_.order() - 1 + step) += d_torque_;
     roll_out_.backward(theta_p_, targets, step, nullptr, nullptr, &d_torques_);
   }
   *d_U = d_torques_.rightCols(horizon_);
@@ -133,7 +133,7 @@ double DdmPlanCost::evaluate(const Eigen::Ref<const Eigen::MatrixXd>& U, Eigen::
 std::vector<DdmPlanCost::HeldPlan> DdmPlanCost::continued(const std::vector<HeldPlan>& plans,
                                                           int begin, int num_steps) {
   const Eigen::MatrixXd& choices = saturatingCost()->torques();
-  const Eigen::Index memory = f_.memory(), length = memory + num_steps;
+  const Eigen::Index order = f_.order(), length = order + num_steps;
   const auto count = static_cast<Eigen::Index>(plans.size()) * choices.cols();
   std::vector<HeldPlan> out;
   Eigen::MatrixXd Z(f_.featureDim(), count * length), U(f_.torqueDim(), count * length);
@@ -141,11 +141,11 @@ std::vector<DdmPlanCost::HeldPlan> DdmPlanCost::continued(const std::vector<Held
   for (const HeldPlan& plan : plans) {
     for (Eigen::Index choice = 0; choice < choices.cols(); ++choice) {
       const Eigen::Index first = static_cast<Eigen::Index>(out.size()) * length;
-      targets[static_cast<Eigen::Index>(out.size())] = first + memory;
+      targets[static_cast<Eigen::Index>(out.size())] = first + order;
       out.push_back(plan);
       auto& torques = out.back().torques;
-      torques.middleCols(memory - 1 + begin, num_steps).colwise() = choices.col(choice);
-      Z.middleCols(first, memory) = plan.features;
+      torques.middleCols(order - 1 + begin, num_steps).colwise() = choices.col(choice);
+      Z.middleCols(first, order) = plan.features;
       U.middleCols(first, length - 1) = torques.middleCols(begin, length - 1);
     }
   }
@@ -154,13 +154,13 @@ std::vector<DdmPlanCost::HeldPlan> DdmPlanCost::continued(const std::vector<Held
   for (Eigen::Index i = 0; i < count; ++i) {
     HeldPlan& plan = out[static_cast<size_t>(i)];
     Eigen::MatrixXd features(f_.featureDim(), length);
-    features.leftCols(memory) = plan.features;
+    features.leftCols(order) = plan.features;
     for (int step = 0; step < num_steps; ++step) {
-      features.col(memory + step) = search_.predicted(step).col(i);
+      features.col(order + step) = search_.predicted(step).col(i);
       plan.cost += stepCost(search_.predicted(step).col(i),
-                            plan.torques.col(memory - 1 + begin + step), nullptr, nullptr);
+                            plan.torques.col(order - 1 + begin + step), nullptr, nullptr);
     }
-    plan.features = features.rightCols(memory);
+    plan.features = features.rightCols(order);
     plan.total = plan.cost;
     if (const auto* cost_to_go = std::get_if<CostToGo>(&terms_)) {
       plan.total +=

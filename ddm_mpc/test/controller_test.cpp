@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 #include <vector>
 
@@ -117,15 +118,20 @@ TEST(EpsilonGreedy, DrawsUniformlyWithinTheBounds) {
   for (const int count : bins) EXPECT_NEAR(count, expected, 4.0 * deviation);
 }
 
-TEST(EpsilonGreedy, HoldsARandomTorqueForTheGivenSteps) {
+TEST(EpsilonGreedy, HoldsARandomTorqueForOneToTheGivenSteps) {
   EpsilonGreedy policy(nullptr, explore(1.0, /*hold_steps=*/3), TrialId());
-  const std::vector<double> u = torques(decide(&policy, 30));
-  for (int step = 0; step < 30; step += 3) {
-    EXPECT_EQ(u[step], u[step + 1]);
-    EXPECT_EQ(u[step], u[step + 2]);
-    if (step > 0) {
-      EXPECT_NE(u[step], u[step - 1]);
-    }
+  const std::vector<double> u = torques(decide(&policy, 600));
+  std::map<int, int> counts;  // of torques held for so many steps
+  int held = 1;
+  for (size_t step = 1; step < u.size(); ++step, ++held) {
+    if (u[step] == u[step - 1]) continue;
+    ++counts[held];
+    held = 0;
+  }
+  ASSERT_EQ(counts.size(), 3U);
+  for (const auto& [steps, count] : counts) {
+    EXPECT_TRUE(steps >= 1 && steps <= 3) << steps;
+    EXPECT_NEAR(count, 100, 40) << steps;  // 300 torques are held for 2 steps in the mean
   }
 }
 

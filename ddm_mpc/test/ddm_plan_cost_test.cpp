@@ -32,7 +32,7 @@ double slowCost(const Ddm& model, const History& x, const Eigen::VectorXd& goal,
     std::vector<double> h;
     for (int lag = 0; lag < model.options().order; ++lag) {
       h.insert(h.end(), features[lag].data(), features[lag].data() + features[lag].size());
-      const Eigen::VectorXd& torque = torques[lag + model.options().delay];
+      const Eigen::VectorXd& torque = torques[lag];
       for (Eigen::Index i = 0; i < torque.size(); ++i) {
         h.push_back(torque[i] / model.predictionModel().maxTorque()[i]);
       }
@@ -62,17 +62,14 @@ double slowCost(const Ddm& model, const History& x, const Eigen::VectorXd& goal,
 
 TEST(DdmPlanCost, ValueGradientAndFeaturesEqualSlowComputationsForModelsOfAllShapes) {
   struct Shape {
-    int order, torque_dim, horizon, delay;
+    int order, torque_dim, horizon;
   };
-  for (const Shape& shape :
-       {Shape{1, 1, 1, 0}, {1, 2, 7, 2}, {3, 1, 7, 0}, {3, 2, 1, 2}, {3, 2, 7, 2}}) {
-    SCOPED_TRACE(::testing::Message()
-                 << "order " << shape.order << ", " << shape.torque_dim << " motors, horizon "
-                 << shape.horizon << ", delay " << shape.delay);
+  for (const Shape& shape : {Shape{1, 1, 1}, {1, 2, 7}, {3, 1, 7}, {3, 2, 1}, {3, 2, 7}}) {
+    SCOPED_TRACE(::testing::Message() << "order " << shape.order << ", " << shape.torque_dim
+                                      << " motors, horizon " << shape.horizon);
     RandomModelOptions options;
     options.model.order = shape.order;
     options.torque_dim = shape.torque_dim;
-    options.model.delay = shape.delay;
     if (options.torque_dim == 2) options.model.max_torque = {4.0, 2.0};
     options.gain = 0.7;
     const Ddm model = randomModel(options);
@@ -96,19 +93,14 @@ TEST(DdmPlanCost, ValueGradientAndFeaturesEqualSlowComputationsForModelsOfAllSha
   }
 }
 
-TEST(DdmPlanCost, GradientMatchesDifferencesForEveryFormOfFAndWithAnOffset) {
-  for (const bool residual : {false, true}) {
-    RandomModelOptions options;
-    options.model.residual = residual;
-    options.model.increments = residual;
-    options.model.order = residual ? 3 : 2;
-    options.gain = 0.7;
-    const Ddm model = randomModel(options);
-    DdmPlanCost cost(model, 6, kControlWeight);
-    cost.setProblem(randomHistory(model, 10), testing::randomMatrix(2, 1, 20),
-                    0.1 * testing::randomMatrix(2, 1, 30));
-    EXPECT_TRUE(gradientMatches(&cost, 2.0 * testing::randomMatrix(1, 6, 30))) << residual;
-  }
+TEST(DdmPlanCost, GradientMatchesDifferencesWithAnOffset) {
+  RandomModelOptions options;
+  options.gain = 0.7;
+  const Ddm model = randomModel(options);
+  DdmPlanCost cost(model, 6, kControlWeight);
+  cost.setProblem(randomHistory(model, 10), testing::randomMatrix(2, 1, 20),
+                  0.1 * testing::randomMatrix(2, 1, 30));
+  EXPECT_TRUE(gradientMatches(&cost, 2.0 * testing::randomMatrix(1, 6, 30)));
 }
 
 }  // namespace

@@ -71,10 +71,10 @@ inline Ddm linearModel(RandomModelOptions options, const Eigen::MatrixXd& A,
 
 /// A state in the middle of a trial, with features and torques that differ from step to step.
 inline History randomHistory(const Ddm& model, unsigned seed) {
-  History x(model.options().memory(), model.featureDim(), model.torqueDim());
-  for (int step = 0; step < model.options().memory(); ++step) {
+  History x(model.options().order, model.featureDim(), model.torqueDim());
+  for (int step = 0; step < model.options().order; ++step) {
     x.observe(0.5 * testing::randomMatrix(model.featureDim(), 1, seed + 2 * step));
-    if (step + 1 < model.options().memory())
+    if (step + 1 < model.options().order)
       x.apply(testing::randomMatrix(model.torqueDim(), 1, seed + 2 * step + 1));
   }
   return x;

@@ -24,7 +24,7 @@ std::shared_ptr<const Ddm> integrator() {
 
 /// The constant torque that minimises the policy's sum: of k B u to z_ref - z over all steps k.
 double bestTorque(const Ddm& model, const Grey& grey) {
-  History x(model.options().memory(), model.featureDim(), model.torqueDim());
+  History x(model.options().order, model.featureDim(), model.torqueDim());
   x.observe(model.encode(grey));
   const Eigen::VectorXd z = model.predict(x, Eigen::VectorXd::Zero(1));
   const Eigen::VectorXd B = model.predict(x, Eigen::VectorXd::Ones(1)) - z;

@@ -49,8 +49,8 @@ def main():
     images, torques = run_trial(camera, ddm_mpc.Controller(None, max_torque=small), args)
     model = ddm_model.train([(images, torques)], cv2.imread(args.goal, cv2.IMREAD_GRAYSCALE), max_torque=args.limit)
     model.save("robot.ddm")
-    past = model.options["order"] + model.options["delay"]
-    predicted = model.decode(model.rollout(model.encode(images[:past])[-model.options["order"]:], torques[:past + 9]))
+    past = model.options["order"]
+    predicted = model.decode(model.rollout(model.encode(images[:past]), torques[:past + 9]))
     recorded = model.decode(model.encode(images[past:past + 10]))
     cv2.imwrite("predictions.png", np.vstack([np.hstack(recorded), np.hstack(predicted)]))
 

@@ -53,13 +53,12 @@ def read_clip(evaluation):
             run, images.shape[1], model.image_size))
     dt = float(read_setting(run, "plant/dt"))
     steps, n = max(1, round(AHEAD_S / dt)), model.options["order"]
-    memory = n + model.options["delay"]
     features, paths, expected = model.encode(images), [], [None] * len(images)
     for now in range(len(images)):
-        if now < memory - 1:
+        if now < n - 1:
             paths.append(features[now:now + 1])
             continue
-        ahead = model.roll_out(features[now - n + 1:now + 1], torques.values[now - memory + 1:now + steps])
+        ahead = model.roll_out(features[now - n + 1:now + 1], torques.values[now - n + 1:now + steps])
         paths.append(np.concatenate([features[now:now + 1], ahead]))
         if now + steps < len(images):
             expected[now + steps] = np.clip(255.0 * model.decode(ahead[-1:])[0], 0, 255)

@@ -62,11 +62,11 @@ def nearest_positions(learned, positions, features):
 def predicted(model, episode, steps):
     """Predicts features `steps` ahead from each frame of an episode. Returns (predicted features, indices of the images
     that were recorded then)."""
-    n, memory = model.options["order"], model.options["order"] + model.options["delay"]
-    starts = range(memory - 1, len(episode.images) - steps)
+    n = model.options["order"]
+    starts = range(n - 1, len(episode.images) - steps)
     features = model.encode(episode.images)
     ahead = model.roll_out([features[now - n + 1:now + 1] for now in starts],
-                           [episode.torques[now - memory + 1:now + steps] for now in starts])
+                           [episode.torques[now - n + 1:now + steps] for now in starts])
     return ahead[:, -1], [now + steps for now in starts]
 
 
@@ -87,7 +87,7 @@ def diagnose(run):
     for steps in (0,) + STEPS:
         errors = []
         for episode in held_out:
-            if steps and len(episode.images) <= steps + model.options["order"] + model.options["delay"] - 1:
+            if steps and len(episode.images) <= steps + model.options["order"] - 1:
                 continue
             features, numbers = predicted(model, episode, steps) if steps else (model.encode(episode.images), slice(None))
             errors.append(joints.distances(nearest_positions(learned, positions, features), episode.positions[numbers]))

@@ -23,17 +23,12 @@ Fills the marked blocks of pages with numbers of ddm_launch/results. A block is
 The text is an f-string of Python. Its expressions read tables below results by table(FILE), a data frame of pandas;
 ddm_launch/study/ddm_study/pages.py has the other functions, such as of(FILE, ROWS), which gives '48 of 50'."""
 BLOCK = re.compile(r"(<!-- fill\n(.*?)\n-->\n\n).*?(\n\n<!-- filled -->)", re.DOTALL)
-# Descriptions of the variants in efficient/ablation and efficient/tried. The first two have other values in the folder
-# tried.
-TRIED_LABELS = {"auto_encoder_widths": "a wider auto-encoder", "starts": "6 starts"}
+# Descriptions of the variants in efficient/ablation.
 LABELS = {"auto_encoder_widths": "the paper's auto-encoder", "blur": "no blur", "cost": "the paper's cost and horizon",
-          "delay": "no choice of the delay", "epsilon": "the paper's share of random torques",
-          "held_torques": "no held torques", "increments": "no increments", "offset": "no offset correction",
-          "predictor_widths": "the paper's width of f", "residual": "no residual prediction",
-          "selection": "starts chosen by what is minimised", "solver": "plain L-BFGS", "starts": "one start",
-          "steps": "no multi-step loss", "warm_up": "no warm-up", "weight_decay": "no weight decay",
-          "horizon": "plans of 8 steps", "iterations": "1000 iterations", "order": "order 3",
-          "predictor_narrow": "a predictor half as wide"}
+          "epsilon": "the paper's share of random torques",
+          "held_torques": "no held torques", "offset": "no offset correction",
+          "predictor": "f as a network", "solver": "plain L-BFGS", "starts": "one start",
+          "steps": "no multi-step loss", "weight_decay": "no weight decay"}
 
 
 def plus_minus(mean, error, digits=2, sign=False):
@@ -94,17 +89,16 @@ class Functions:
         return "\n".join(table_row(name.replace("_", " "), *(self.of(path, "frames == %d" % count) for count in frames))
                          for name, path in results.variants(self.path("efficient/nuisances")).items())
 
-    def variants(self, kind, *frames):
+    def variants(self, *frames):
         """Table rows of all variants of a preset, with differences of success rates and p-values at these frames. Rows
         are sorted by the sum of the differences at the first number of frames and over all later ones; the most harmful
         variants come first."""
-        table = results.differences(self.path("efficient/" + kind), self.path("efficient/ablation/preset/trials.csv"))
-        labels = dict(LABELS, **TRIED_LABELS) if kind == "tried" else LABELS
+        table = results.differences(self.path("efficient/ablation"), self.path("efficient/ablation/preset/trials.csv"))
         drawn = table[table.frames.isin((table.frames.iloc[0], table.frames.iloc[-1]))]
         lines = []
         for variant in drawn.groupby("variant").difference.sum().sort_values(kind="stable").index:
             rows = table[table.variant == variant].set_index("frames")
-            lines.append(table_row(labels[variant], *(cell for text in frames for cell in (
+            lines.append(table_row(LABELS[variant], *(cell for text in frames for cell in (
                 plus_minus(rows.difference[text], rows.se[text], 3, True), "%.3f" % rows.p_holm[text]))))
         return "\n".join(lines)
 

@@ -49,9 +49,9 @@ def record(env, controller, seed):
 def rollouts(model, features, torques):
     """Predicts MAX_STEPS steps from each held-out image that has enough others before and after it. Returns (indices of
     these images [S], features of these images and predicted features [S x MAX_STEPS + 1 x d])."""
-    order, memory = model.options["order"], model.options["order"] + model.options["delay"]
-    starts = np.arange(memory - 1, NUM_HELD_OUT - MAX_STEPS)
-    ahead = [model.rollout(features[now - order + 1:now + 1], torques[now - memory + 1:now + MAX_STEPS]) for now in starts]
+    n = model.options["order"]
+    starts = np.arange(n - 1, NUM_HELD_OUT - MAX_STEPS)
+    ahead = [model.rollout(features[now - n + 1:now + 1], torques[now - n + 1:now + MAX_STEPS]) for now in starts]
     return starts, np.concatenate([features[starts, None], ahead], axis=1)
 
 

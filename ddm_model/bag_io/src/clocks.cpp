@@ -12,7 +12,7 @@ namespace ddm {
 namespace {
 
 constexpr double kLag = 0.5;          // largest lag that does not matter, in units of dt
-constexpr long kMaxDelay = 50;        // largest value of training/max_delay [samples]
+constexpr long kMaxDelay = 50;        // longer lags are not due to a camera [samples]
 constexpr double kHeldBefore = 60.0;  // longest time from the last torque to the first image [s]
 constexpr double kLeap = 1.0;         // a clock that gains more at once has been set [s]
 constexpr char kRecordingTimes[] = ": the times at which messages were recorded count instead";
@@ -167,9 +167,9 @@ Pairs pairByClocks(std::vector<BagImage> images, std::vector<BagTorque> torques,
                            " their stamps, and the torques have no stamps that can be trusted",
                            kRecordingTimes));
     if (frames >= 1 && frames <= kMaxDelay) {
-      notes.back() += textOf(
-          "; if it is not the recorder that was late but the camera, raise training/max_delay to ",
-          frames);
+      notes.back() +=
+          textOf("; if it is not the recorder that was late but the camera, raise model/order by ",
+                 frames);
     }
   }
   pairs.notes.insert(pairs.notes.begin(), notes.begin(), notes.end());

@@ -68,7 +68,7 @@ class Ddm {
   /// 4.1) from the features and torques of the samples t - n - d + 1 ... t and the torques after t.
   /// @param Z        features of all samples                              [feature_dim x N]
   /// @param torques  torques of all samples [N m]                          [torque_dim x N]
-  /// @param frame    t, with n + d - 1 <= t <= N - num_steps. The samples used must have no gap
+  /// @param frame    t, with n - 1 <= t <= N - num_steps. The samples used must have no gap
   /// @return         z_t, then the predicted features       [feature_dim x (num_steps + 1)]
   /// @throws std::invalid_argument if a size or the index t does not fit
   Eigen::MatrixXd rollOut(const Eigen::MatrixXd& Z,

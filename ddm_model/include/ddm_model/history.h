@@ -12,20 +12,19 @@ namespace ddm {
 
 /// Controller state x_t = [z_t, ..., z_{t-n+1}, u_{t-1}, ..., u_{t-n+1}] (paper, eq. 8). At the
 /// start of a trial the first feature fills all n features and the torques are 0, as if the plant
-/// had been at rest. Deviation: if images are d samples late (model/delay), features and torques
-/// reach back d samples more.
+/// had been at rest.
 class History {
  public:
-  /// @param memory       n + d, see ModelOptions::memory()
+  /// @param order        n
   /// @param feature_dim  dim z
   /// @param torque_dim   number of motors
   /// @throws std::invalid_argument if a parameter is < 1
-  History(int memory, int feature_dim, int torque_dim) {
-    if (memory < 1 || feature_dim < 1 || torque_dim < 1) {
-      throw std::invalid_argument("history: memory and dimensions must be >= 1");
+  History(int order, int feature_dim, int torque_dim) {
+    if (order < 1 || feature_dim < 1 || torque_dim < 1) {
+      throw std::invalid_argument("history: order and dimensions must be >= 1");
     }
-    features_.setZero(feature_dim, memory);
-    torques_.setZero(torque_dim, memory - 1);
+    features_.setZero(feature_dim, order);
+    torques_.setZero(torque_dim, order - 1);
   }
 
   /// Clears the state: the next feature is treated as the first of a trial.
@@ -50,9 +49,9 @@ class History {
   }
 
   bool empty() const { return empty_; }
-  /// @return z_t, z_{t-1}, ...: newest first  [feature_dim x (n + d)]
+  /// @return z_t, z_{t-1}, ...: newest first  [feature_dim x n]
   const Eigen::MatrixXd& features() const { return features_; }
-  /// @return u_{t-1}, u_{t-2}, ...: newest first [N m]  [torque_dim x (n + d - 1)]
+  /// @return u_{t-1}, u_{t-2}, ...: newest first [N m]  [torque_dim x (n - 1)]
   const Eigen::MatrixXd& torques() const { return torques_; }
 
  private:
@@ -81,11 +80,11 @@ std::vector<Eigen::Index> farthestPoints(const Eigen::Ref<const Eigen::MatrixXf>
 /// by farthest-point sampling of (z_t, z_t - z_{t-1}), each part in units of its own spread.
 /// @param Z          features of all samples; columns after them are ignored  [feature_dim x >= N]
 /// @param data       torques and segments of the samples
-/// @param memory     n + d, number of features in a state
+/// @param order      n, number of features in a state
 /// @param max_count  number of support states at most
-/// @return           in each column z_t ... z_{t-n-d+1}, then u_{t-1} ... u_{t-n-d+1} [N m]
-///                   [memory feature_dim + (memory - 1) torque_dim x M]
+/// @return           in each column z_t ... z_{t-n+1}, then u_{t-1} ... u_{t-n+1} [N m]
+///                   [n feature_dim + (n - 1) torque_dim x M]
 Eigen::MatrixXf supportStates(const Eigen::Ref<const Eigen::MatrixXf>& Z, const DataSet& data,
-                              int memory, Eigen::Index max_count);
+                              int order, Eigen::Index max_count);
 
 }  // namespace ddm

@@ -16,16 +16,14 @@ namespace ddm {
 /// Prediction model f: one step in feature space (paper, eq. 2). The caller holds its parameters.
 ///
 ///   z_{t+1} = f(h_n; theta_P)
-///   h_n     = [z_t, u_{t-d}, z_{t-1}, u_{t-1-d}, ..., z_{t-n+1}, u_{t-n+1-d}]
+///   h_n     = [z_t, u_t, z_{t-1}, u_{t-1}, ..., z_{t-n+1}, u_{t-n+1}]
 ///
-/// with u in units of max_torque. RollOut builds h_n. Deviations, each off by default:
-///  * model/delay d: images are d samples late, so that h_n has the torques of d samples earlier.
-///  * model/residual: f is z_t plus the network, which then learns only the change of z. Without
-///    this option, f is the network. Its output layer is linear in both cases.
-///  * model/increments: the network sees z_t, z_t - z_{t-1}, z_{t-1} - z_{t-2}, ... instead of the
-///    features, because features of successive images are almost equal and only their differences
-///    show the motion.
-///  * model/predictor gp: in a trained model, the mean of a Gaussian process replaces the network.
+/// with u in units of max_torque. RollOut builds h_n. The output layer of the network is linear.
+/// Deviations with model/predictor gp:
+///  * f is z_t plus the network, which then learns only the change of z.
+///  * The network sees z_t, z_t - z_{t-1}, z_{t-1} - z_{t-2}, ... instead of the features, because
+///    features of successive images are almost equal and only their differences show the motion.
+///  * In a trained model, the mean of a Gaussian process replaces the network.
 template <class Scalar>
 class PredictionModel {
  public:
@@ -48,10 +46,6 @@ class PredictionModel {
   int torqueDim() const { return torque_dim_; }
   /// @return n
   int order() const { return options_.order; }
-  /// @return d
-  int delay() const { return options_.delay; }
-  /// @return n + d, the number of samples from the oldest one in h_n to the current one
-  int memory() const { return options_.memory(); }
   /// @return scale of the torques: f sees u / maxTorque() [N m]  [torque_dim]
   const Eigen::VectorXd& maxTorque() const { return max_torque_; }
   /// @return n (feature_dim + torque_dim), the size of h_n
@@ -62,9 +56,9 @@ class PredictionModel {
   /// @return P_f, the number of parameters
   Eigen::Index numParams() const { return gp_ ? gp_->numParams() : network_.numParams(); }
 
-  /// Replaces past features in regressors by differences, if model/increments is set.
-  void toIncrements(Eigen::Ref<Matrix> regressors) const {
-    for (int lag = options_.increments ? order() - 1 : 0; lag > 0; --lag) {
+  /// Replaces past features in regressors by differences, if f sees differences.
+  void toDifferences(Eigen::Ref<Matrix> regressors) const {
+    for (int lag = options_.featureDifferences() ? order() - 1 : 0; lag > 0; --lag) {
       features(lag, regressors) = features(lag - 1, regressors) - features(lag, regressors);
     }
   }
@@ -75,14 +69,14 @@ class PredictionModel {
   /// @param predicted   out: z_{t+1}; must have this size already                [feature_dim x N]
   void forward(const Scalar* theta_p, Eigen::Ref<Matrix> regressors,
                typename Mlp<Scalar>::Tape* tape, Eigen::Ref<Matrix> predicted) const {
-    toIncrements(regressors);
+    toDifferences(regressors);
     if (gp_) {  // eq. (2)
       gp_->forward(theta_p, regressors, tape);
     } else {
       network_.forward(theta_p, regressors, tape);
     }
     predicted = tape->output();
-    if (options_.residual) predicted += features(0, regressors);
+    if (options_.featureDifferences()) predicted += features(0, regressors);
   }
 
   /// Vector-Jacobian product of forward(). Consumes the tape.
@@ -99,11 +93,11 @@ class PredictionModel {
       network_.backward(theta_p, tape, d_predicted, d_theta_p, d_regressors);
     }
     auto d_h = d_regressors->leftCols(d_predicted.cols());
-    for (int lag = 1; lag < (options_.increments ? order() : 1); ++lag) {
+    for (int lag = 1; lag < (options_.featureDifferences() ? order() : 1); ++lag) {
       features(lag - 1, d_h) += features(lag, d_h);
       features(lag, d_h) *= Scalar(-1);
     }
-    if (options_.residual) features(0, d_h) += d_predicted;
+    if (options_.featureDifferences()) features(0, d_h) += d_predicted;
   }
 
  private:

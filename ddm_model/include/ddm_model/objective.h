@@ -32,7 +32,7 @@ inline TrainingData<float> makeTrainingData(const DataSet& data, const Pca& pca)
 /// Joint objective V = w (V_R + V_P) (paper, eq. 5a) on PCA scores s, with
 ///
 ///   V_R = sum_t |s_t - g(g^-1(s_t))|^2     eqs. (1, 5c), over all images and the goal image
-///   V_P = sum_t |s_{t+1} - g(f(h_n))|^2    eqs. (4, 5b), over all samples with n + d
+///   V_P = sum_t |s_{t+1} - g(f(h_n))|^2    eqs. (4, 5b), over all samples with n
 ///                                          predecessors in their segment
 ///
 /// With Terms::prediction_steps k > 1, V_P is the mean over predictions 1 ... k steps ahead, each
@@ -98,7 +98,7 @@ class JointObjective {
   double weight() const { return weight_; }
   /// @return number of one-step predictions
   Eigen::Index numPredictions() const;
-  /// @throws std::invalid_argument if there are none, as no segment is longer than n + d samples
+  /// @throws std::invalid_argument if there are none, as no segment is longer than n samples
   void requirePredictions() const;
 
  private:

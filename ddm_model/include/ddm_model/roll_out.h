@@ -22,7 +22,7 @@ class RollOut {
  public:
   using Vector = Eigen::Matrix<Scalar, Eigen::Dynamic, 1>;
   using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
-  /// Indices of the targets, each >= n + d. A view: the caller owns the array.
+  /// Indices of the targets, each >= n. A view: the caller owns the array.
   using Targets = Eigen::Map<const Eigen::Matrix<Eigen::Index, Eigen::Dynamic, 1>>;
 
   /// @param f  must outlive the rollout

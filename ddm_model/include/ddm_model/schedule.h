@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,9 +28,8 @@ struct Stage {
 
 /// Stages of a training.
 struct Schedule {
-  bool pca_start = true;        ///< layer-wise PCA initialises the auto-encoder; false: random
-  std::vector<Stage> stages;    ///< stages of each restart, at least one
-  std::optional<Stage> finish;  ///< last stage, of the best restart alone, on more and more samples
+  bool pca_start = true;      ///< layer-wise PCA initialises the auto-encoder; false: random
+  std::vector<Stage> stages;  ///< at least one
 
   /// @return all terms that occur in a stage
   Terms terms() const;
@@ -48,10 +46,7 @@ struct Schedule {
 std::vector<std::string> scheduleNames();
 
 /// Builds the stages of training/schedule, with the prediction steps, weight decay and iterations
-/// of `training`. With several prediction steps, a stage with one step precedes each stage with
-/// V_P, because rollouts of an untrained f have no useful gradient. With
-/// training/selection_iterations, the last stage is split: `finish` is its rest after the choice
-/// among the restarts.
+/// of `training`.
 /// @pre training/schedule is one of scheduleNames(), as TrainingOptions::problems() checks
 Schedule makeSchedule(const TrainingOptions& training);
 

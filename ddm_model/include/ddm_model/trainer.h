@@ -41,9 +41,8 @@ struct TrainingResult {
 };
 
 /// Trains a model on all data from new initial weights (a warm start from the last optimum gets
-/// stuck), by the stages of training/schedule (paper, Sec. 2.3). Trains num_starts restarts for
-/// each delay and keeps the best, whose delay is in the options of the model. Skips delays that
-/// leave no prediction in any segment.
+/// stuck), by the stages of training/schedule (paper, Sec. 2.3). Of several restarts, the one that
+/// predicts best after 100 iterations on a part of the data continues on all data.
 /// @param data   all samples so far
 /// @param model  architecture
 /// @param info   seed, trial and config are kept; the training fills in the other fields

@@ -7,7 +7,7 @@ import zlib
 import numpy as np
 
 MAGIC, HEADER = b"DDMMODEL", "<IQI"  # after MAGIC: version, size of the content [bytes], CRC-32
-VERSION = 6  # version of the file format
+VERSION = 7  # version of the file format
 
 
 class ModelFileError(OSError, ValueError):
@@ -59,11 +59,8 @@ def _read_options(reader):
     options = {name: int(reader.number("<i4")) for name in ("pca_dim", "feature_dim", "order")}
     for name in ("encoder_widths", "decoder_widths", "predictor_widths"):
         options[name] = reader.array("<i4").tolist()
-    for name in ("residual", "increments"):
-        options[name] = bool(reader.number("u1"))
     options["max_torque"] = reader.array("<f8")
     options["blur"] = float(reader.number("<f8"))
-    options["delay"] = int(reader.number("<i4"))
     options["predictor"] = reader.text()
     return options
 
@@ -123,8 +120,8 @@ class Model:
         support_states = reader.array("<f4")
         self.info["config"] = reader.text()
         self.arrays = self._read_arrays(reader)
-        memory, dim = self.options["order"] + self.options["delay"], self.options["feature_dim"]
-        self.support_states = support_states.reshape(-1, memory * dim + (memory - 1) * self.torque_dim)[:, :dim]
+        n, dim = self.options["order"], self.options["feature_dim"]
+        self.support_states = support_states.reshape(-1, n * dim + (n - 1) * self.torque_dim)[:, :dim]
         goal = reader.array("u1")
         self.goal_feature = None
         if goal.size > 0:
@@ -138,7 +135,7 @@ class Model:
         options = self.options
         max_torque = options["max_torque"]
         arrays = {"image_size": self.image_size, "torque_dim": self.torque_dim,
-                  **{name: int(options[name]) for name in ("feature_dim", "order", "delay", "residual", "increments")},
+                  "feature_dim": options["feature_dim"], "order": options["order"],
                   "max_torque": max_torque[0] if max_torque.size == 1 else max_torque,
                   "blur": _blur(self.image_size, options["blur"]), "pca_scale": float(reader.number("<f4")),
                   "pca_mean": reader.array("<f4"), "pca_basis": reader.array("<f4"),
@@ -205,36 +202,35 @@ class Model:
         return y.reshape(-1, self.image_size, self.image_size)
 
     def predict(self, features, torques):
-        """Prediction model: z_{t+1} = f(z_t, u_t, ..., z_{t-n+1}, u_{t-n+1}), eq. (2). With a delay d the torques are
-        u_{t-d}, ...
+        """Prediction model: z_{t+1} = f(z_t, u_t, ..., z_{t-n+1}, u_{t-n+1}), eq. (2).
 
-        features: z_{t-n+1} ... z_t, oldest first  [... x n x feature_dim]. torques: u_{t-n+1-d} ... u_t, oldest first
-        [... x n + d x torque_dim, N m]. Returns z_{t+1}  [... x feature_dim]. Raises ValueError if the number of
+        features: z_{t-n+1} ... z_t, oldest first  [... x n x feature_dim]. torques: u_{t-n+1} ... u_t, oldest first
+        [... x n x torque_dim, N m]. Returns z_{t+1}  [... x feature_dim]. Raises ValueError if the number of
         features or torques is wrong.
         """
         features, torques = np.asarray(features, dtype=float), np.asarray(torques, dtype=float)
-        n, delay = self.options["order"], self.options["delay"]
-        if features.shape[-2] != n or torques.shape[-2] != n + delay:
+        n = self.options["order"]
+        if features.shape[-2] != n or torques.shape[-2] != n:
             raise ValueError("the last %d features and %d torques predict the next feature, got %d and %d" % (
-                n, n + delay, features.shape[-2], torques.shape[-2]))
+                n, n, features.shape[-2], torques.shape[-2]))
+        gp = self.options["predictor"] == "gp"
         past = features[..., ::-1, :].copy()
-        if self.options["increments"]:
+        if gp:
             past[..., 1:, :] = features[..., :0:-1, :] - features[..., -2::-1, :]
-        h = np.concatenate([past, torques[..., n - 1::-1, :] / self.arrays["max_torque"]], axis=-1)
+        h = np.concatenate([past, torques[..., ::-1, :] / self.arrays["max_torque"]], axis=-1)
         h = h.reshape(h.shape[:-2] + (-1,))
-        change = self._network("f", h) if self.options["predictor"] == "network" else self._gp(h)
-        return features[..., -1, :] + change if self.options["residual"] else change
+        return features[..., -1, :] + self._gp(h) if gp else self._network("f", h)
 
     def roll_out(self, features, torques):
         """Rollout: predicts K features, each from the features before it.
 
         features: as for predict(). torques: as for predict(), followed by the later torques
-        [... x n + d - 1 + K x torque_dim, N m]. Returns z_{t+1} ... z_{t+K}  [... x K x feature_dim].
+        [... x n - 1 + K x torque_dim, N m]. Returns z_{t+1} ... z_{t+K}  [... x K x feature_dim].
         """
-        n, memory = self.options["order"], self.options["order"] + self.options["delay"]
+        n = self.options["order"]
         features, torques = np.asarray(features, dtype=float), np.asarray(torques, dtype=float)
-        for k in range(torques.shape[-2] - memory + 1):
-            following = self.predict(features[..., -n:, :], torques[..., k:k + memory, :])
+        for k in range(torques.shape[-2] - n + 1):
+            following = self.predict(features[..., -n:, :], torques[..., k:k + n, :])
             features = np.concatenate([features, following[..., None, :]], axis=-2)
         return features[..., n:, :]
 

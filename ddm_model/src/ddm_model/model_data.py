@@ -93,11 +93,11 @@ def image_errors(arrays, images, reconstructions):
                        component_squares / whole if whole > 0.0 else component_squares, np.sqrt(np.mean(of_own_mean)))
 
 
-def prediction_starts(segment_sizes, memory, steps):
-    """Indices of frames that have memory - 1 frames before them and `steps` frames after them in the same segment.
+def prediction_starts(segment_sizes, order, steps):
+    """Indices of frames that have order - 1 frames before them and `steps` frames after them in the same segment.
     Returns at most MAX_STARTS indices, evenly spread over all."""
     begins = np.cumsum(segment_sizes) - segment_sizes
-    starts = np.concatenate([begin + np.arange(memory - 1, size - steps) for begin, size in zip(begins, segment_sizes)])
+    starts = np.concatenate([begin + np.arange(order - 1, size - steps) for begin, size in zip(begins, segment_sizes)])
     number = min(len(starts), MAX_STARTS)
     return starts[np.arange(number) * len(starts) // max(number, 1)]
 
@@ -107,10 +107,10 @@ def predicted_features(model, features, torques, starts, steps, told=None):
 
     told: a torque that replaces the recorded torques from the start on.
     """
-    n, memory = model.options["order"], model.options["order"] + model.options["delay"]
-    past, known = features[starts[:, None] + np.arange(1 - n, 1)], torques[starts[:, None] + np.arange(1 - memory, steps)]
+    n = model.options["order"]
+    past, known = features[starts[:, None] + np.arange(1 - n, 1)], torques[starts[:, None] + np.arange(1 - n, steps)]
     if told is not None:
-        known[:, memory - 1:] = told
+        known[:, n - 1:] = told
     return np.concatenate([past[:, -1:], model.roll_out(past, known)], axis=1)
 
 
@@ -196,9 +196,9 @@ class ModelData:
         self.tables.update({"features.csv": self.frames, "spectrum.csv": self.spectrum})
 
     def _predict(self, segment_sizes, steps, say):
-        memory = self.model.options["order"] + self.model.options["delay"]
-        steps = max(0, min(steps, np.max(segment_sizes) - memory))  # shorter if no segment is long enough
-        starts, errors = prediction_starts(segment_sizes, memory, steps), np.zeros((3, 0))
+        order = self.model.options["order"]
+        steps = max(0, min(steps, np.max(segment_sizes) - order))  # shorter if no segment is long enough
+        starts, errors = prediction_starts(segment_sizes, order, steps), np.zeros((3, 0))
         if steps > 0:
             say("predicting %d step(s) from %d frames" % (steps, len(starts)))
             predicted, blind = (predicted_features(self.model, self.features, self.torques, starts, steps, told)

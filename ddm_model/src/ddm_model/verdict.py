@@ -151,8 +151,7 @@ def judge_predictions(data, check):
     check("Predictions beat repeating the last frame", beats, figure,
           "somewhere in the first third of the steps at most %g of the error of the last frame repeated" % BEATS_REPEAT,
           "More and better excited data first; longer bags without gaps if nothing could be predicted. Then "
-          "training/prediction_steps 4 with residual and increments (as preset efficient), more starts, or training/max_delay "
-          "1 if the camera may be late.")
+          "the preset efficient, more starts, or a larger model/order if the camera is several frames late.")
     check("The model responds to the torque", responds, effect,
           "at least %g times the error with the true torques" % TORQUE_EFFECT,
           "Without effect nothing can be steered. Check that the recorded torque is the one that the motor got, and that its "

@@ -95,13 +95,13 @@ struct Decision {
 
 /// Epsilon-greedy exploration (paper, Sec. 3.2): with probability epsilon a random torque,
 /// otherwise the answer of the policy. In the random trial epsilon is 1, in an evaluation 0. A
-/// random torque is uniform in +-max_torque and is held for hold_steps steps. Exploration has its
+/// random torque is uniform in +-max_torque and is held for 1 ... hold_steps steps. Exploration has its
 /// own random stream.
 class EpsilonGreedy {
  public:
   struct Options {
     double epsilon = 0.2;  ///< probability of a random torque [-]
-    int hold_steps = 1;    ///< steps for which a random torque is held [-]
+    int hold_steps = 1;    ///< largest number of steps for which a random torque is held [-]
     Eigen::VectorXd max_torque = Eigen::VectorXd::Constant(1, 6.0);  ///< of each motor [N m]
   };
 

@@ -81,7 +81,7 @@ class DdmPlanCost : public PlanCost {
  private:
   struct HeldPlan {
     Eigen::MatrixXd torques;   // like torques_
-    Eigen::MatrixXd features;  // the newest n + d features after the plan, like features_
+    Eigen::MatrixXd features;  // the newest n features after the plan, like features_
     double cost;               // sum of its steps' costs
     double total;              // with the cost-to-go
   };
@@ -104,8 +104,8 @@ class DdmPlanCost : public PlanCost {
   Eigen::VectorXd offset_;
   RollOut<double> roll_out_;
   RollOut<double> search_;     // of the plans that proposal() compares
-  Eigen::MatrixXd features_;   // z_{-n-d+1} ... z_0                    [feature_dim x (n + d)]
-  Eigen::MatrixXd torques_;    // u_{-n-d+1} ... u_{K-1} [N m]  [torque_dim x (n + d - 1 + K)]
+  Eigen::MatrixXd features_;   // z_{-n+1} ... z_0                            [feature_dim x n]
+  Eigen::MatrixXd torques_;    // u_{-n+1} ... u_{K-1} [N m]        [torque_dim x (n - 1 + K)]
   Eigen::MatrixXd d_torques_;  // dJ/d torques_ [1/(N m)]
   Eigen::VectorXd d_step_;     // d stepCost / dz                           [feature_dim]
   Eigen::VectorXd d_torque_;   // d stepCost / du                           [torque_dim]

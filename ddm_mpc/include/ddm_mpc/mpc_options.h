@@ -18,7 +18,7 @@ struct MpcOptions {
   double offset_gain = 0.0;       ///< share of a prediction error that enters the offset [-]
   std::vector<double> max_torque = {6.0};  ///< bound on |u|; one for all motors, or one each [N m]
   double epsilon = 0.2;                    ///< probability of a uniformly random torque [-]
-  int hold_steps = 1;                      ///< steps for which a random torque is held [-]
+  int hold_steps = 1;                      ///< most steps for which a random torque is held [-]
   int num_starts = 3;                      ///< initial plans of the search [-]
   int max_iterations = 40;                 ///< cap on the BFGS iterations from each of them [-]
   double function_tolerance = 1e-4;        ///< stop if J changes by less than this fraction [-]

@@ -28,11 +28,6 @@ inline ModelConfig readModelConfig(ParamReader* reader) {
   config.model = reader->read<ModelOptions>("model");
   config.training = reader->read<TrainingOptions>("training");
   config.data_set = reader->read<BagOptions>("data_set");
-  OptionChecks checks("training");
-  checks.require(config.model.predictor != "gp" || config.training.max_delay == 0, "max_delay",
-                 "be 0 where model/predictor is gp: increase model/order instead",
-                 std::to_string(config.training.max_delay));
-  for (const std::string& problem : checks.problems()) reader->report(problem);
   return config;
 }
 
