@@ -102,7 +102,7 @@ TEST(Configuration, ThePaperPresetHoldsTheNumbersOfThePaper) {
   EXPECT_EQ(all.plant_info.tolerance, 10.0);
 }
 
-TEST(Configuration, ThePresetsForFewAndForManyMotorsHaveTheSameModel) {
+TEST(Configuration, PresetUnderactuatedHasTheModelOfPresetEfficient) {
   const auto modelOf = [](const std::string& preset) {
     return YAML::Dump(toYaml(read(arguments(preset, "pendulum")).model.model));
   };

@@ -50,7 +50,7 @@ Stage lastStage(const RestartProblem& problem, size_t part) {
 void minimiseRestart(const RestartProblem& problem, Progress* progress, Restart* restart) {
   const std::vector<Stage>& stages = problem.schedule.stages;
   const Terms terms = problem.schedule.terms();
-  const auto requireLowered = [&](size_t stage, const Minimum& minimum) {
+  const auto lowered = [&](size_t stage, const Minimum& minimum) {
     if (minimum.improved()) return true;
     std::ostringstream text;
     text << "training did not lower the objective: stage " << stage + 1 << " of " << stages.size()
@@ -64,7 +64,7 @@ void minimiseRestart(const RestartProblem& problem, Progress* progress, Restart*
   restart->initial_cost = networks->cost(restart->theta, terms);
   for (size_t i = 0; i + 1 < stages.size(); ++i) {
     Problem all(problem.model, problem.parts.back());
-    if (!requireLowered(i, minimiseFrom(stages[i], problem.training, &all, progress, restart))) {
+    if (!lowered(i, minimiseFrom(stages[i], problem.training, &all, progress, restart))) {
       return;
     }
   }
@@ -78,7 +78,7 @@ void minimiseRestart(const RestartProblem& problem, Progress* progress, Restart*
     if (stage.max_iterations > 0) {
       const Minimum minimum =
           minimiseFrom(stage, problem.training, networks.get(), progress, restart);
-      if (part == 0 && !requireLowered(stages.size() - 1, minimum)) return;
+      if (part == 0 && !lowered(stages.size() - 1, minimum)) return;
     }
     restart->error = networks->cost(restart->theta, terms);
   }

@@ -75,7 +75,7 @@ struct Restart {
   int evaluations = 0;
 };
 
-/// What restarts minimise.
+/// Options, schedule and data that all restarts of a training share.
 struct RestartProblem {
   ModelOptions model;
   TrainingOptions training;
@@ -90,8 +90,8 @@ struct RestartProblem {
                  const TrainingData<float>& data);
 
   /// Number of parts after which restarts are compared: all but the last, or the only one. The
-  /// comparison must come late. After 200 samples it tells nothing about the final model, and of
-  /// four restarts on the same images of the cart-pole, the best predicts twice as well as the worst.
+  /// comparison must come late: after 800 or 1,600 of the 5,500 samples of the cart-pole, it does not
+  /// find the restart that predicts best in the end, whose errors are half of those of the worst.
   size_t numCompared() const { return parts.size() > 1 ? parts.size() - 1 : 1; }
   /// @return cap on the iterations of the whole training
   double maxIterations() const;

@@ -65,7 +65,7 @@ class Ddm {
   Eigen::VectorXd predict(const History& x, const Eigen::VectorXd& u) const;
 
   /// Predicts a rollout z_t, z_{t+1}, ..., z_{t+num_steps} (paper, eq. 2 step by step, and Sec.
-  /// 4.1) from the features and torques of the samples t - n - d + 1 ... t and the torques after t.
+  /// 4.1) from the features and torques of the samples t - n + 1 ... t and the torques after t.
   /// @param Z        features of all samples                              [feature_dim x N]
   /// @param torques  torques of all samples [N m]                          [torque_dim x N]
   /// @param frame    t, with n - 1 <= t <= N - num_steps. The samples used must have no gap
