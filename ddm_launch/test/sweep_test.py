@@ -13,6 +13,7 @@ from processes import call_main, find_program, run_experiment
 from run_files import differences, expected_files, files_in, read_bytes, read_rows, read_yaml
 from sweeps import (Sweep, assert_ends, assert_nothing_runs, assert_table, debug, is_finished, programs_of, seed_folder, snapshot,
                     wait_for)
+from ddm_launch.command import run_program
 from ddm_launch.sweep import main
 
 LONG = 12  # trials, enough to observe a seed while it runs
@@ -215,3 +216,18 @@ def test_predictions_are_collected_too(out):
     assert rows[0][:3] == ["seed", "steps", "num_predictions"]
     assert [row[:2] for row in rows[1:]] == [[str(seed), str(k)] for seed in (0, 1) for k in range(1, 9)]
     assert_ends(0, ["0 of 2 seeds to run"], *arguments)
+
+
+def test_an_interruption_within_a_destructor_ends_the_program(capsys):
+    class Handle:  # like subprocess.Popen, in whose destructor Python drops exceptions
+        def __del__(self):
+            os.kill(os.getpid(), signal.SIGINT)
+            self.ended = True  # the handler runs before this statement
+
+    def work():
+        handle = Handle()
+        del handle
+        wait_for(lambda: False, "the signal")
+
+    assert run_program("sweep", work) == 128 + signal.SIGINT
+    assert capsys.readouterr().err == "sweep: interrupted by SIGINT\n"

@@ -23,13 +23,24 @@ class Interrupted(BaseException):
         self.number = number
 
 
+def _in_destructor(frame):
+    """Whether this frame, or one that called it, is a destructor."""
+    while frame and frame.f_code.co_name != "__del__":
+        frame = frame.f_back
+    return frame is not None
+
+
 @contextlib.contextmanager
 def raised_as_exception():
     """Context in which the first signal raises Interrupted in the main thread. Later signals are ignored and do not
     interrupt the clean-up."""
-    def on_signal(number, _):
+    def on_signal(number, frame):
         for each in SIGNALS:
             signal.signal(each, signal.SIG_IGN)
+        if _in_destructor(frame):  # of subprocess.Popen, for example: Python would print the exception and go on
+            signal.signal(signal.SIGALRM, lambda _, later: on_signal(number, later))
+            signal.setitimer(signal.ITIMER_REAL, 0.01)
+            return
         raise Interrupted(number)
 
     before = {number: signal.getsignal(number) for number in SIGNALS}
