@@ -16,7 +16,8 @@ namespace {
 
 constexpr Eigen::Index kMaxLikelihoodSamples = 400;  // the time grows with the cube
 constexpr Eigen::Index kCentresForOutliers = 300;    // enough to find outliers
-constexpr double kUnexplained = 0.1;  // variance without the centres / variance of the noise
+constexpr double kUnexplained = 0.03;  // variance without the centres / variance of the noise
+constexpr double kRounding = 1e-12;    // relative error of a variance in decompose()
 constexpr int kMaxIterations = 40;
 constexpr double kInitialNoise = 0.3;  // sigma, if the outputs have standard deviation 1
 constexpr double kJitter = 1e-8;       // added to the variance of the noise
@@ -234,8 +235,9 @@ Eigen::VectorXd fitGp(const Transitions& transitions, std::mt19937_64* rng,
   const Eigen::VectorXd inverse_scales =
       (-gp.p.head(D)).array().exp() / gp.input_spread.array();  // of regressors as they are
   const Eigen::MatrixXd A = inverse_scales.asDiagonal() * transitions.regressors;
+  const double tolerance = std::max(kUnexplained * noise, kRounding * variance);
   const PivotedCholesky cholesky =
-      decompose(A, variance, kUnexplained * noise, std::min(A.cols(), max_centres));
+      decompose(A, variance, tolerance, std::min(A.cols(), max_centres));
   const Eigen::MatrixXd& L = cholesky.L;
   Eigen::MatrixXd normal = L.transpose() * L;
   normal.diagonal().array() += noise;

@@ -15,7 +15,7 @@ namespace ddm {
 
 /// Largest number of centres. The time of a plan is proportional. Half as many predict the cart-pole
 /// almost twice as badly over five steps.
-constexpr Eigen::Index kMaxCentres = 1200;
+constexpr Eigen::Index kMaxCentres = 2400;
 
 /// Regressors h_n of f and changes of the feature, for all samples of a data set that have n - 1
 /// predecessors and a successor.
@@ -58,7 +58,7 @@ int selectOrder(const Transitions& longest, Eigen::Index num_rows, int min_order
 /// first. The hyper-parameters of the remaining errors maximise the marginal likelihood of at most
 /// 400 transitions, which are drawn at random. A pivoted Cholesky decomposition of the kernel
 /// matrix selects the centres among all transitions: it takes the transition whose output the
-/// centres so far explain worst, until the variance that is not explained is a tenth of the noise's
+/// centres so far explain worst, until the variance that is not explained is 3 % of the noise's
 /// everywhere, or until there are max_centres centres. The weights follow from all transitions
 /// (subset of regressors: Rasmussen and Williams, 2006, Sec. 8.3.1).
 /// @param rng    draws the transitions

@@ -39,6 +39,27 @@ Eigen::MatrixXd initialisePair(const Eigen::MatrixXd& inputs, Eigen::Map<Eigen::
   return ((encoder_w * inputs).colwise() + encoder_b).array().atan();
 }
 
+/// Copies layers of a network into a network that contains several such networks side by side.
+/// Blocks of weights between different networks stay 0.
+/// @param number         of the copied network within `all`
+/// @param common_input   all networks have the same input
+/// @param common_output  the output is the sum of the outputs, each weighted by `share`
+void copyLayers(const Mlp<double>& one, const double* theta, const Mlp<double>& all,
+                double* all_theta, Eigen::Index number, bool common_input, bool common_output,
+                double share) {
+  const int last = one.numLayers() - 1;
+  for (int layer = 0; layer <= last; ++layer) {
+    const Eigen::MatrixXd w = one.weights(theta, layer);
+    const Eigen::VectorXd b = one.biases(theta, layer);
+    const bool sum = common_output && layer == last;
+    const Eigen::Index row = sum ? 0 : number * w.rows();
+    const Eigen::Index col = common_input && layer == 0 ? 0 : number * w.cols();
+    const double scale = sum ? share : 1.0;
+    all.weights(all_theta, layer).block(row, col, w.rows(), w.cols()) = scale * w;
+    all.biases(all_theta, layer).segment(row, b.size()) += scale * b;
+  }
+}
+
 }  // namespace
 
 Eigen::VectorXd initialTheta(const Networks<double>& networks, const Eigen::MatrixXd& scores,
@@ -58,6 +79,28 @@ Eigen::VectorXd initialTheta(const Networks<double>& networks, const Eigen::Matr
     const int mirror = decoder.numLayers() - 1 - layer;
     inputs = initialisePair(inputs, encoder.weights(theta_e, layer), encoder.biases(theta_e, layer),
                             decoder.weights(theta_d, mirror), decoder.biases(theta_d, mirror));
+  }
+  return theta;
+}
+
+ModelOptions joinedOptions(ModelOptions one, int count) {
+  one.feature_dim *= count;
+  for (int& width : one.encoder_widths) width *= count;
+  return one;
+}
+
+Eigen::VectorXd joinAutoEncoders(const ModelOptions& one,
+                                 const std::vector<Eigen::VectorXd>& thetas) {
+  const auto torque_dim = static_cast<int>(one.max_torque.size());  // does not matter here
+  const auto count = static_cast<int>(thetas.size());
+  const Networks<double> part(one, torque_dim), all(joinedOptions(one, count), torque_dim);
+  Eigen::VectorXd theta = Eigen::VectorXd::Zero(all.numOfAutoEncoder());
+  for (int i = 0; i < count; ++i) {
+    const double* own = thetas[static_cast<size_t>(i)].data();
+    copyLayers(part.encoder(), part.encoderOf(own), all.encoder(), all.encoderOf(theta.data()), i,
+               /*common_input=*/true, /*common_output=*/false, 1.0);
+    copyLayers(part.decoder(), part.decoderOf(own), all.decoder(), all.decoderOf(theta.data()), i,
+               /*common_input=*/false, /*common_output=*/true, 1.0 / count);
   }
   return theta;
 }

@@ -37,15 +37,6 @@ Stage warmUpOf(Stage stage) {
   return stage;
 }
 
-/// @return last stage with its share of the iterations for a part of the data
-Stage lastStage(const RestartProblem& problem, size_t part) {
-  Stage stage = problem.schedule.stages.back();
-  const auto count = static_cast<int>(problem.parts.size()), i = static_cast<int>(part);
-  const int total = stage.max_iterations;
-  stage.max_iterations = total * (i + 1) / count - total * i / count;
-  return stage;
-}
-
 /// Minimises all stages of one restart, the last stage on the parts before numCompared().
 void minimiseRestart(const RestartProblem& problem, Progress* progress, Restart* restart) {
   const std::vector<Stage>& stages = problem.schedule.stages;
@@ -74,12 +65,9 @@ void minimiseRestart(const RestartProblem& problem, Progress* progress, Restart*
     if (part == 0 && warm_up.max_iterations > 0) {
       minimiseFrom(warm_up, problem.training, networks.get(), progress, restart);
     }
-    const Stage stage = lastStage(problem, part);
-    if (stage.max_iterations > 0) {
-      const Minimum minimum =
-          minimiseFrom(stage, problem.training, networks.get(), progress, restart);
-      if (part == 0 && !lowered(stages.size() - 1, minimum)) return;
-    }
+    const Minimum minimum =
+        minimiseFrom(stages.back(), problem.training, networks.get(), progress, restart);
+    if (part == 0 && !lowered(stages.size() - 1, minimum)) return;
     restart->error = networks->cost(restart->theta, terms);
   }
   if (!std::isfinite(restart->error)) {  // a rollout diverges
@@ -136,15 +124,18 @@ RestartProblem::RestartProblem(const ModelOptions& model_options,
   parts.push_back(data);
 }
 
+size_t RestartProblem::numKept() const {
+  return model.predictor == "gp" ? std::max<size_t>(1, training.num_starts / 2) : 1;
+}
+
 double RestartProblem::maxIterations() const {
-  double before = warmUpOf(schedule.stages.back()).max_iterations;
-  for (size_t i = 0; i + 1 < schedule.stages.size(); ++i)
-    before += schedule.stages[i].max_iterations;
-  double compared = 0.0, rest = 0.0;
-  for (size_t part = 0; part < parts.size(); ++part) {
-    (part < numCompared() ? compared : rest) += lastStage(*this, part).max_iterations;
-  }
-  return training.num_starts * (before + compared) + rest;
+  const auto before = static_cast<double>(schedule.stages.size() - 1);
+  const auto compared = static_cast<double>(numCompared());
+  const double rest = static_cast<double>(parts.size()) - compared;
+  const double stages =
+      training.num_starts * (before + compared) + static_cast<double>(numKept()) * rest;
+  return stages * training.max_iterations +
+         training.num_starts * warmUpOf(schedule.stages.back()).max_iterations;
 }
 
 void minimiseRestarts(const RestartProblem& problem, Progress* progress,
@@ -171,13 +162,10 @@ void minimiseRestarts(const RestartProblem& problem, Progress* progress,
   }
 }
 
-void finish(const RestartProblem& problem, Progress* progress, Restart* best) {
+void finish(const RestartProblem& problem, Progress* progress, Restart* restart) {
   for (size_t part = problem.numCompared(); part < problem.parts.size(); ++part) {
     Problem networks(problem.model, problem.parts[part]);
-    const Stage stage = lastStage(problem, part);
-    if (stage.max_iterations > 0) {
-      minimiseFrom(stage, problem.training, &networks, progress, best);
-    }
+    minimiseFrom(problem.schedule.stages.back(), problem.training, &networks, progress, restart);
   }
 }
 

@@ -80,9 +80,9 @@ struct RestartProblem {
   ModelOptions model;
   TrainingOptions training;
   Schedule schedule;
-  /// Parts of the data on which the last stage is minimised one after the other, each in an equal
-  /// share of the iterations. A later part contains twice as many samples, the last one all. The
-  /// first iterations need only few samples.
+  /// Parts of the data on which the last stage is minimised one after the other. A later part
+  /// contains twice as many samples, the last one all, so that the iterations grow with the
+  /// logarithm of the number of samples, and most of them need only few samples.
   std::vector<TrainingData<float>> parts;
 
   /// @param data  all samples. A single restart has one part, all samples
@@ -93,6 +93,10 @@ struct RestartProblem {
   /// comparison must come late: after 800 or 1,600 of the 5,500 samples of the cart-pole, it does not
   /// find the restart that predicts best in the end, whose errors are half of those of the worst.
   size_t numCompared() const { return parts.size() > 1 ? parts.size() - 1 : 1; }
+  /// Number of restarts that continue on all samples. A Gaussian process predicts the joined
+  /// features of several restarts better than those of one, because the errors of their encoders
+  /// are independent. A network f belongs to the features of one restart.
+  size_t numKept() const;
   /// @return cap on the iterations of the whole training
   double maxIterations() const;
 };
@@ -104,9 +108,9 @@ struct RestartProblem {
 void minimiseRestarts(const RestartProblem& problem, Progress* progress,
                       std::vector<Restart>* restarts);
 
-/// Minimises the last stage for the best restart on the parts from numCompared() on.
+/// Minimises the last stage for one of the best restarts on the parts from numCompared() on.
 /// @throws Cancelled if the training was cancelled
-void finish(const RestartProblem& problem, Progress* progress, Restart* best);
+void finish(const RestartProblem& problem, Progress* progress, Restart* restart);
 
 /// Selects pieces of segments, spread evenly over all data, and the goal image. A piece has up to
 /// 100 samples.

@@ -7,9 +7,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <numeric>
-#include <sstream>
 #include <utility>
+#include <vector>
 
 #include "ddm_model/history.h"
 #include "ddm_model/networks.h"
@@ -22,15 +21,36 @@ namespace {
 
 constexpr Eigen::Index kMaxSupportStates = 1000;
 
-/// Adds the statistics of the best restart to the origin of a model.
-ModelInfo infoOf(const Restart& best, Problem* problem, const DataSet& data, double squared_scale,
-                 ModelInfo info) {
-  const auto value = problem->objective.evaluate(best.theta.cast<float>(), nullptr);
-  info.frames = static_cast<std::uint32_t>(data.numFrames());
-  info.v_r = squared_scale * value.v_r;
-  info.v_p = squared_scale * value.v_p;
-  info.feature_spread = problem->objective.featureSpread();
-  return info;
+/// @return root mean squared distance of the columns of Z to their mean
+double spreadOf(const Eigen::MatrixXd& Z) {
+  const Eigen::MatrixXd centred = Z.colwise() - Z.rowwise().mean();
+  return std::sqrt(centred.squaredNorm() / static_cast<double>(Z.cols()));
+}
+
+/// Auto-encoders of the kept restarts, joined, and the features of all images.
+struct Joined {
+  std::vector<Eigen::VectorXd> thetas;  // of each restart; empty: no restart has finite errors
+  Eigen::MatrixXd Z;                    // [feature_dim of all x M]
+  double v_r = 0.0, v_p = 0.0;          // of the best restart [score^2]
+  double final_cost = 0.0;              // of the best restart
+};
+
+Joined join(const std::vector<Restart>& kept, const Terms& terms, Problem* problem) {
+  Joined joined;
+  for (const Restart& restart : kept) {
+    const auto value = problem->objective.evaluate(restart.theta.cast<float>(), nullptr, terms);
+    if (!std::isfinite(value.v_r + value.v_p)) continue;
+    if (joined.thetas.empty()) {
+      joined.v_r = value.v_r;
+      joined.v_p = value.v_p;
+      joined.final_cost = problem->objective.weight() * value.of(terms);
+    }
+    const Eigen::MatrixXd Z = problem->objective.features().cast<double>();
+    joined.Z.conservativeResize(joined.Z.rows() + Z.rows(), Z.cols());
+    joined.Z.bottomRows(Z.rows()) = Z;
+    joined.thetas.push_back(restart.theta);
+  }
+  return joined;
 }
 
 /// Implements train(). @throws Cancelled if the callback cancels the training
@@ -62,42 +82,50 @@ TrainingResult trainUnlessCancelled(const DataSet& data, const ModelOptions& mod
   Progress progress(callback, restart_problem.maxIterations(), squared_scale);
   minimiseRestarts(restart_problem, &progress, &restarts);
 
-  // Keeps the best restart, which continues alone.
-  Restart& best =
-      *std::min_element(restarts.begin(), restarts.end(),
-                        [](const Restart& a, const Restart& b) { return a.error < b.error; });
+  // The best restarts continue on all samples.
+  std::stable_sort(restarts.begin(), restarts.end(),
+                   [](const Restart& a, const Restart& b) { return a.error < b.error; });
+  std::vector<Restart> kept;
   TrainingResult result;
-  if (std::isfinite(best.error)) finish(restart_problem, &progress, &best);
-  for (const Restart& restart : restarts) {
+  for (Restart& restart : restarts) {
+    if (std::isfinite(restart.error) && kept.size() < restart_problem.numKept()) {
+      finish(restart_problem, &progress, &restart);
+      kept.push_back(restart);
+    }
     result.iterations += restart.iterations;
     result.evaluations += restart.evaluations;
   }
-  if (std::isfinite(best.error)) {
-    ModelOptions trained_model = model;
-    Problem problem(model, scores);
-    const double final_cost = problem.cost(best.theta, schedule.terms());
-    ModelInfo trained = infoOf(best, &problem, data, squared_scale, info);
-    if (std::isfinite(trained.v_r + trained.v_p)) {
-      const Eigen::MatrixXf Z = problem.objective.features();
-      if (model.predictor == "gp") {
-        std::mt19937_64 draw = randomStream({info.seed, info.trial}, StreamRole::kGpSamples);
-        replaceByGp(
-            Z.cast<double>(), data, &draw, [&progress] { progress.repeat(); }, &trained_model,
-            &best.theta);
-      }
-      trained.support_states = supportStates(Z, data, trained_model.order, kMaxSupportStates);
-      result.initial_cost = best.initial_cost;
-      result.final_cost = final_cost;
-      result.model.emplace(trained_model, data.imageSize(), data.torqueDim(), pca, best.theta,
-                           data.goal(), trained);
-    } else {
-      std::ostringstream text;
-      text << "the errors of the model must be finite, got V_R " << trained.v_r << " and V_P "
-           << trained.v_p << ": check the bags, or leave the block training at its defaults";
-      best.message = text.str();
-    }
+  result.message = restarts.front().message;
+  if (kept.empty()) return result;
+
+  Problem problem(model, scores);
+  const Joined joined = join(kept, schedule.terms(), &problem);
+  if (joined.thetas.empty()) {
+    result.message =
+        "the errors V_R and V_P of the model are not finite: check the bags, or leave the "
+        "block training at its defaults";
+    return result;
   }
-  result.message = best.message;
+  ModelOptions trained_model = model;
+  Eigen::VectorXd theta = joined.thetas.front();
+  if (model.predictor == "gp") {
+    trained_model = joinedOptions(model, static_cast<int>(joined.thetas.size()));
+    theta = joinAutoEncoders(model, joined.thetas);
+    std::mt19937_64 draw = randomStream({info.seed, info.trial}, StreamRole::kGpSamples);
+    replaceByGp(
+        joined.Z, data, &draw, [&progress] { progress.repeat(); }, &trained_model, &theta);
+  }
+  ModelInfo trained = info;
+  trained.frames = static_cast<std::uint32_t>(data.numFrames());
+  trained.v_r = squared_scale * joined.v_r;
+  trained.v_p = squared_scale * joined.v_p;
+  trained.feature_spread = spreadOf(joined.Z);
+  trained.support_states =
+      supportStates(joined.Z.cast<float>(), data, trained_model.order, kMaxSupportStates);
+  result.initial_cost = kept.front().initial_cost;
+  result.final_cost = joined.final_cost;
+  result.model.emplace(trained_model, data.imageSize(), data.torqueDim(), pca, theta, data.goal(),
+                       trained);
   return result;
 }
 

@@ -89,5 +89,28 @@ TEST_F(Initialisation, StaysFiniteWhereThereIsNoSpread) {
   EXPECT_TRUE(initialTheta(Networks<double>(options, 1), nothing, pca_start_, &rng).allFinite());
 }
 
+TEST_F(Initialisation, JoinedAutoEncodersGiveAllFeaturesAndTheMeanOfTheirImages) {
+  const ModelOptions one = testing::toyModelOptions();
+  const std::vector<Eigen::VectorXd> thetas = {initial(one, 1), initial(one, 2), initial(one, 3)};
+  const Networks<double> part(one, 1), all(joinedOptions(one, 3), 1);
+  pca_start_ = false;
+  const std::vector<Eigen::VectorXd> others = {initial(one, 4), initial(one, 5), initial(one, 6)};
+  for (const auto& models : {thetas, others}) {
+    const Eigen::VectorXd theta = joinAutoEncoders(one, models);
+    Mlp<double>::Tape z, image, joined_z, joined_image;
+    all.encoder().forward(all.encoderOf(theta.data()), scores_, &joined_z);
+    all.decoder().forward(all.decoderOf(theta.data()), joined_z.output(), &joined_image);
+    Eigen::MatrixXd mean = Eigen::MatrixXd::Zero(scores_.rows(), scores_.cols());
+    for (int i = 0; i < 3; ++i) {
+      const double* own = models[static_cast<size_t>(i)].data();
+      part.encoder().forward(part.encoderOf(own), scores_, &z);
+      part.decoder().forward(part.decoderOf(own), z.output(), &image);
+      EXPECT_TRUE(joined_z.output().middleRows(2 * i, 2).isApprox(z.output(), 1e-12)) << i;
+      mean += image.output() / 3.0;
+    }
+    EXPECT_TRUE(joined_image.output().isApprox(mean, 1e-12));
+  }
+}
+
 }  // namespace
 }  // namespace ddm

@@ -104,11 +104,11 @@ TEST_F(Trainer, KeepsTheBestOfSeveralStarts) {
   EXPECT_NEAR(weight(several) / weight(first), 1.0, 1e-5);  // the model is the one of that cost
 }
 
-TEST_F(Trainer, TheRestartThatPredictsBestContinuesAloneOnAllSamples) {
+TEST_F(Trainer, TheBestRestartContinuesAloneOnAllSamples) {
   data_.append(testing::toyTrial(400, 3));  // parts of 200, 400 and all 460 samples
   training_.num_starts = 5;
   training_.function_tolerance = 0.0;
-  training_.max_iterations = 120;
+  training_.max_iterations = 40;
   double last = 0.0;
   const TrainingResult result = run([&](const TrainingProgress& progress) {
     EXPECT_GE(progress.fraction_done, last);
@@ -120,6 +120,25 @@ TEST_F(Trainer, TheRestartThatPredictsBestContinuesAloneOnAllSamples) {
   EXPECT_DOUBLE_EQ(last, 1.0);
   EXPECT_EQ(result.model->info().frames, 460U);
   EXPECT_LT(result.final_cost, 0.5 * result.initial_cost);
+}
+
+TEST_F(Trainer, AGaussianProcessPredictsTheFeaturesOfTheBetterHalfOfTheRestarts) {
+  data_.append(testing::toyTrial(400, 3));  // parts of 200, 400 and all 460 samples
+  model_.predictor = "gp";
+  training_.num_starts = 4;
+  training_.function_tolerance = 0.0;
+  training_.max_iterations = 40;
+  double done = 0.0;
+  const TrainingResult result = run([&](const TrainingProgress& progress) {
+    done = progress.fraction_done;
+    return true;
+  });
+  ASSERT_TRUE(result.model) << result.message;
+  EXPECT_EQ(result.iterations, 4 * 80 + 2 * 40);
+  EXPECT_DOUBLE_EQ(done, 1.0);
+  EXPECT_EQ(result.model->featureDim(), 2 * model_.feature_dim);
+  const Eigen::MatrixXd Z = encodeAll(*result.model, data_);
+  EXPECT_FALSE(Z.topRows(model_.feature_dim).isApprox(Z.bottomRows(model_.feature_dim), 0.1));
 }
 
 TEST_F(Trainer, KnowsTheSpreadOfItsFeatures) {

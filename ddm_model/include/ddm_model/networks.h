@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <optional>
 #include <random>
+#include <vector>
 
 #include "ddm_model/gp_mean.h"
 #include "ddm_model/mlp.h"
@@ -173,5 +174,16 @@ struct Networks {
 /// @return           theta                                                    [P]
 Eigen::VectorXd initialTheta(const Networks<double>& networks, const Eigen::MatrixXd& scores,
                              bool pca_start, std::mt19937_64* rng);
+
+/// @return options of joinAutoEncoders() for `count` models with options `one`
+ModelOptions joinedOptions(ModelOptions one, int count);
+
+/// Joins the auto-encoders of several models of the same images. The joined feature contains their
+/// features one after the other. The joined decoder returns the mean of their images.
+/// @param one     options that the models share
+/// @param thetas  parameters of each model, at least one                   [P or more]
+/// @return        theta_E and theta_D for joinedOptions()
+Eigen::VectorXd joinAutoEncoders(const ModelOptions& one,
+                                 const std::vector<Eigen::VectorXd>& thetas);
 
 }  // namespace ddm

@@ -89,11 +89,6 @@ class JointObjective {
 
   /// @return features of all images at the last evaluate()  [feature_dim x M]
   const Matrix& features() const { return features_; }
-  /// @return root mean squared distance of those features to their mean
-  double featureSpread() const {
-    return std::sqrt(static_cast<double>(
-        (features_.colwise() - features_.rowwise().mean()).squaredNorm() / features_.cols()));
-  }
   /// @return w
   double weight() const { return weight_; }
   /// @return number of one-step predictions

@@ -35,14 +35,16 @@ struct TrainingResult {
   std::string message;       ///< why there is no model, or why the solver ended
   int iterations = 0;
   int evaluations = 0;        ///< evaluations of the objective with its gradient
-  double initial_cost = 0.0;  ///< scaled objective of the kept restart at its initial weights
+  double initial_cost = 0.0;  ///< scaled objective of the best restart at its initial weights
   double final_cost = 0.0;    ///< the same at the end; 0 without a model
   double seconds = 0.0;       ///< wall time [s]
 };
 
 /// Trains a model on all data from new initial weights (a warm start from the last optimum gets
-/// stuck), by the stages of training/schedule (paper, Sec. 2.3). Of several restarts, the one that
-/// predicts best after 100 iterations on a part of the data continues on all data.
+/// stuck), by the stages of training/schedule (paper, Sec. 2.3). Of several restarts, the one with
+/// the smallest objective on about half of the data continues on all data. With model/predictor gp,
+/// the better half of the restarts continues: their features are joined, so that the model has
+/// several times model/feature_dim features.
 /// @param data   all samples so far
 /// @param model  architecture
 /// @param info   seed, trial and config are kept; the training fills in the other fields
