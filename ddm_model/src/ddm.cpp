@@ -70,6 +70,7 @@ Ddm::Ddm(ModelOptions options, int image_size, int torque_dim, Pca pca, Eigen::V
                                 std::to_string(pca_.scale) + kRemedy);
   }
   projection_ = Projection(pca_);
+  networks_.prediction_model.fixParameters(thetaP());
   if (hasGoal()) goal_feature_ = encode(goal_);
   // Finite parameters may still be too large to compute with.
   requireFinite("feature of the goal image", goal_feature_);

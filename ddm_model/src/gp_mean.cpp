@@ -14,7 +14,11 @@ void GpMean<Scalar>::forward(const Scalar* theta, const Eigen::Ref<const Matrix>
   scaled = inverseScales(theta).asDiagonal() * inputs;
   const auto c = centres(theta);
   kernel.noalias() = c.transpose() * scaled;
-  kernel.colwise() -= Scalar(0.5) * c.colwise().squaredNorm().transpose();
+  if (half_squared_norms_.size() > 0) {
+    kernel.colwise() -= half_squared_norms_;
+  } else {
+    kernel.colwise() -= Scalar(0.5) * c.colwise().squaredNorm().transpose();
+  }
   kernel.rowwise() -= Scalar(0.5) * scaled.colwise().squaredNorm();
   kernel = kernel.array().exp();
   Matrix& output = tape->activations[2];

@@ -58,6 +58,12 @@ class GpMean {
                                     output_dim_, num_centres_);
   }
 
+  /// Stores what forward() needs of the parameters, which must not change afterwards. Without it,
+  /// forward() computes the norms of the centres each time, a fifth of the time of a plan.
+  void fixParameters(const Scalar* theta) {
+    half_squared_norms_ = Scalar(0.5) * centres(theta).colwise().squaredNorm().transpose();
+  }
+
   /// @param theta   parameters                                            [numParams()]
   /// @param inputs  one sample per column                              [input_dim x N]
   /// @param tape    out: inputs / l and kernel values; tape->output() is the result
@@ -78,6 +84,7 @@ class GpMean {
   int input_dim_;
   int output_dim_;
   Eigen::Index num_centres_;
+  Vector half_squared_norms_;  // |c_i|^2 / 2; empty: fixParameters() was not called  [M]
 };
 
 extern template class GpMean<float>;

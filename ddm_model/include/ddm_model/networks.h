@@ -57,6 +57,11 @@ class PredictionModel {
   /// @return P_f, the number of parameters
   Eigen::Index numParams() const { return gp_ ? gp_->numParams() : network_.numParams(); }
 
+  /// Prepares for many predictions with the same parameters  [P_f]
+  void fixParameters(const Scalar* theta_p) {
+    if (gp_) gp_->fixParameters(theta_p);
+  }
+
   /// Replaces past features in regressors by differences, if f sees differences.
   void toDifferences(Eigen::Ref<Matrix> regressors) const {
     for (int lag = options_.featureDifferences() ? order() - 1 : 0; lag > 0; --lag) {
