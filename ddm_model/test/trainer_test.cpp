@@ -123,7 +123,7 @@ TEST_F(Trainer, TheBestRestartContinuesAloneOnAllSamples) {
 }
 
 TEST_F(Trainer, AGaussianProcessPredictsTheFeaturesOfTheBetterHalfOfTheRestarts) {
-  data_.append(testing::toyTrial(400, 3));  // parts of 200, 400 and all 460 samples
+  data_.append(testing::toyTrial(160, 3));  // parts of 200 and all 220 samples
   model_.predictor = "gp";
   training_.num_starts = 4;
   training_.function_tolerance = 0.0;
@@ -134,7 +134,7 @@ TEST_F(Trainer, AGaussianProcessPredictsTheFeaturesOfTheBetterHalfOfTheRestarts)
     return true;
   });
   ASSERT_TRUE(result.model) << result.message;
-  EXPECT_EQ(result.iterations, 4 * 80 + 2 * 40);
+  EXPECT_EQ(result.iterations, 4 * 40 + 2 * 40);
   EXPECT_DOUBLE_EQ(done, 1.0);
   EXPECT_EQ(result.model->featureDim(), 2 * model_.feature_dim);
   const Eigen::MatrixXd Z = encodeAll(*result.model, data_);
