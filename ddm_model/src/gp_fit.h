@@ -13,8 +13,9 @@
 
 namespace ddm {
 
-/// Largest number of centres. The time of a plan is proportional. Half as many predict the cart-pole
-/// almost twice as badly over five steps.
+/// Largest number of centres. The time of a plan is proportional to it. With half as many, errors
+/// over eight steps near the upright pole were twice as large for one of two data sets of the
+/// cart-pole (5,460 images), and equal for the other (4,200 images).
 constexpr Eigen::Index kMaxCentres = 2400;
 
 /// Regressors h_n of f and changes of the feature, for all samples of a data set that have n - 1

@@ -37,19 +37,22 @@ def raised_as_exception():
     def on_signal(number, frame):
         for each in SIGNALS:
             signal.signal(each, signal.SIG_IGN)
-        if _in_destructor(frame):  # of subprocess.Popen, for example: Python would print the exception and go on
+        # Python prints an exception that leaves a destructor, such as that of subprocess.Popen, and goes on. The alarm
+        # therefore repeats the signal until it comes outside of a destructor.
+        if _in_destructor(frame):
             signal.signal(signal.SIGALRM, lambda _, later: on_signal(number, later))
             signal.setitimer(signal.ITIMER_REAL, 0.01)
             return
         raise Interrupted(number)
 
-    before = {number: signal.getsignal(number) for number in SIGNALS}
+    before = {number: signal.getsignal(number) for number in (*SIGNALS, signal.SIGALRM)}
     for number in SIGNALS:
         if number != signal.SIGHUP or before[number] != signal.SIG_IGN:  # nohup ignores SIGHUP
             signal.signal(number, on_signal)
     try:
         yield
     finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)  # the program ended before a repeated signal came
         for number, handler in before.items():
             signal.signal(number, handler)
 
