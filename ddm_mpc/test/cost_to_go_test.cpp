@@ -146,8 +146,7 @@ TEST(PlanWithCostToGo, WeighsEachTorqueAtTheGoalByItsShareOfTheLargest) {
     const double whole = cost.evaluate(U, nullptr);
     return whole - time.value(cost.predictedFeatures().col(1), z, nullptr, nullptr);
   };
-  constexpr double kWidth = 0.25;
-  const double effort = 0.3 * (0.25 + 1.0) / (2.0 * kWidth * kWidth);
+  const double effort = 0.3 * (0.25 + 1.0) / (2.0 * CostToGo::kWidth * CostToGo::kWidth);
   EXPECT_LT(costOfStep(0.0, 0.1), 0.5) << "at the goal";
   EXPECT_NEAR(1.0 - costOfStep(0.3, 0.1), (1.0 - costOfStep(0.0, 0.1)) * std::exp(-effort), 1e-12);
   EXPECT_NEAR(costOfStep(0.3, 1.0), costOfStep(0.0, 1.0), 1e-3) << "far from it";

@@ -13,9 +13,12 @@ namespace ddm {
 
 /// Cost-to-go V(x): the cost of all later steps under the best torques. Deviation: the paper has no
 /// cost-to-go. A plan needs it if |z - z_ref| misleads: a weak motor has to swing a rod away from
-/// the goal before it can reach the goal. V is the discounted sum of the SaturatingCost of each step,
-/// with the width w = 1/4. Value iteration computes V_i at the support states x_i of the model, which are states of
-/// the training data. The prediction model f predicts m = 4 steps from each of them, under each
+/// the goal before it can reach the goal. V is the discounted sum of the SaturatingCost of each
+/// step, with the width w = 0.15. A wider cost also rewards poses whose features are merely similar
+/// to the goal feature: that of an arm that is folded to the other side may be 0.2 spreads away.
+///
+/// Value iteration computes V_i at the support states x_i of the model, which are states of the
+/// training data. The prediction model f predicts m = 4 steps from each of them, under each
 /// combination of the torques -max, 0 and max of the motors. Between the support states, a kernel
 /// interpolates (Ormoneit and Sen, Machine Learning 2002; its averages make the iteration
 /// converge):
@@ -34,7 +37,7 @@ namespace ddm {
 class CostToGo {
  public:
   static constexpr int kHoldSteps = SaturatingCost::kHoldSteps;  ///< m, of the torques [-]
-  static constexpr double kWidth = 0.25;                         ///< w [-]
+  static constexpr double kWidth = 0.15;                         ///< w [-]
   /// Three motors have 3^3 combinations of torques for each of up to 1000 support states, each with
   /// up to 1000 weights: up to half a gigabyte and two seconds. Each further motor triples both.
   static constexpr int kMaxMotors = SaturatingCost::kMaxMotors;
