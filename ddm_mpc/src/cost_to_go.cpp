@@ -63,7 +63,9 @@ std::vector<Eigen::MatrixXd> predictions(const Ddm& model, const Eigen::MatrixXd
 }  // namespace
 
 CostToGo::CostToGo(const Ddm& model, const Eigen::VectorXd& max_torque)
-    : model_(&model), step_cost_(model, max_torque, kWidth) {}
+    : model_(&model),
+      step_cost_(model, max_torque, kWidthInPlan),
+      cost_in_v_(model, max_torque, kWidth) {}
 
 void CostToGo::predictOutcomes() {
   const Eigen::MatrixXd X = model_->info().support_states.cast<double>();
@@ -76,11 +78,11 @@ void CostToGo::predictOutcomes() {
   constexpr double kNoChange = std::numeric_limits<double>::infinity();
   change_spread_ = changes.isZero(0.0) ? kNoChange : changes.norm() / std::sqrt(M);
   points_.resize(2 * dim, M);
-  points_ << Z / step_cost_.spread(), changes / change_spread_;
+  points_ << Z / cost_in_v_.spread(), changes / change_spread_;
   h_ = kSmoothness * spacing(points_);
   outcomes_.resize(static_cast<size_t>(M));
-  for (Eigen::Index i = 0; i < step_cost_.torques().cols(); ++i) {
-    const auto steps = predictions(*model_, X, step_cost_.torques().col(i), kHoldSteps);
+  for (Eigen::Index i = 0; i < cost_in_v_.torques().cols(); ++i) {
+    const auto steps = predictions(*model_, X, cost_in_v_.torques().col(i), kHoldSteps);
     Eigen::MatrixXd path(dim, kHoldSteps);
     for (Eigen::Index state = 0; state < M; ++state) {
       for (int step = 0; step < kHoldSteps; ++step) path.col(step) = steps[step].col(state);
@@ -92,7 +94,7 @@ void CostToGo::predictOutcomes() {
 Eigen::VectorXd CostToGo::pointOf(const Eigen::Ref<const Eigen::VectorXd>& z,
                                   const Eigen::Ref<const Eigen::VectorXd>& before) const {
   Eigen::VectorXd point(2 * z.size());
-  point << z / step_cost_.spread(), (z - before) / change_spread_;
+  point << z / cost_in_v_.spread(), (z - before) / change_spread_;
   return point;
 }
 
@@ -123,11 +125,12 @@ double CostToGo::unknownValue() const { return exploring_ ? kOptimism * kWorst :
 void CostToGo::setGoal(const Eigen::VectorXd& z_ref, bool exploring) {
   if (outcomes_.empty()) predictOutcomes();
   step_cost_.setGoal(z_ref);
+  cost_in_v_.setGoal(z_ref);
   exploring_ = exploring;
   const auto costOf = [this](const Outcome& outcome) {
     double cost = 0.0, discount = 1.0;
     for (int step = 0; step < kHoldSteps; ++step, discount *= kGamma) {
-      cost += discount * step_cost_.evaluate(outcome.path.col(step), nullptr);
+      cost += discount * cost_in_v_.evaluate(outcome.path.col(step), nullptr);
     }
     return cost;
   };
@@ -195,7 +198,7 @@ double CostToGo::value(const Eigen::Ref<const Eigen::VectorXd>& z,
     const Eigen::VectorXd share = weights * (values_ - value) / (sum * h_ * h_);
     const Eigen::VectorXd d_point = points_ * share - point * share.sum();
     *d_before = -d_point.tail(z.size()) / change_spread_;
-    *d_z = d_point.head(z.size()) / step_cost_.spread() - *d_before;
+    *d_z = d_point.head(z.size()) / cost_in_v_.spread() - *d_before;
   }
   return value;
 }

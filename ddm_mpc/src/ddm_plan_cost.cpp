@@ -173,7 +173,8 @@ std::vector<DdmPlanCost::HeldPlan> DdmPlanCost::continued(const std::vector<Held
 
 std::optional<Eigen::MatrixXd> DdmPlanCost::proposal() {
   if (saturatingCost() == nullptr) return std::nullopt;
-  const size_t most = std::holds_alternative<CostToGo>(terms_) ? 1 : kMaxHeldPlans;
+  const auto num_choices = static_cast<size_t>(saturatingCost()->torques().cols());
+  const size_t most = std::holds_alternative<CostToGo>(terms_) ? 1 : num_choices * num_choices;
   const auto better = [](const HeldPlan& a, const HeldPlan& b) { return a.total < b.total; };
   torques_.rightCols(horizon_).setZero();
   std::vector<HeldPlan> plans = {{torques_, features_, 0.0, 0.0}};

@@ -14,8 +14,7 @@ namespace ddm {
 /// Cost-to-go V(x): the cost of all later steps under the best torques. Deviation: the paper has no
 /// cost-to-go. A plan needs it if |z - z_ref| misleads: a weak motor has to swing a rod away from
 /// the goal before it can reach the goal. V is the discounted sum of the SaturatingCost of each
-/// step, with the width w = 0.15. A wider cost also rewards poses whose features are merely similar
-/// to the goal feature: that of an arm that is folded to the other side may be 0.2 spreads away.
+/// step, with the width 1/4.
 ///
 /// Value iteration computes V_i at the support states x_i of the model, which are states of the
 /// training data. The prediction model f predicts m = 4 steps from each of them, under each
@@ -37,7 +36,13 @@ namespace ddm {
 class CostToGo {
  public:
   static constexpr int kHoldSteps = SaturatingCost::kHoldSteps;  ///< m, of the torques [-]
-  static constexpr double kWidth = 0.15;                         ///< w [-]
+  /// Width of the cost in V [-]. With a narrower cost, few support states are near enough to the
+  /// goal, and V is almost the same everywhere.
+  static constexpr double kWidth = 0.25;
+  /// Width of the cost of the steps of a plan [-]. A wider cost rewards states whose features are
+  /// merely similar to the goal feature: that of an arm that is folded to the other side may be 0.2
+  /// spreads away, and the arm then stays there.
+  static constexpr double kWidthInPlan = 0.15;
   /// Three motors have 3^3 combinations of torques for each of up to 1000 support states, each with
   /// up to 1000 weights: up to half a gigabyte and two seconds. Each further motor triples both.
   static constexpr int kMaxMotors = SaturatingCost::kMaxMotors;
@@ -64,7 +69,7 @@ class CostToGo {
                const Eigen::Ref<const Eigen::VectorXd>& before, Eigen::VectorXd* d_z,
                Eigen::VectorXd* d_before) const;
 
-  const SaturatingCost& stepCost() const { return step_cost_; }  ///< cost of a step
+  const SaturatingCost& stepCost() const { return step_cost_; }  ///< cost of a step of a plan
 
  private:
   /// Prediction from a support state under one combination of torques.
@@ -83,7 +88,8 @@ class CostToGo {
   void iterate(const std::vector<std::vector<double>>& costs);
 
   const Ddm* model_;
-  SaturatingCost step_cost_;    // also knows the torques that value iteration compares
+  SaturatingCost step_cost_;
+  SaturatingCost cost_in_v_;    // also knows the torques that value iteration compares
   double change_spread_ = 1.0;  // of the changes z_t - z_{t-1} of the support states
   double h_ = 1.0;              // width of the kernel, in units of both spreads
   Eigen::MatrixXd points_;      // p(x_i)  [2 feature_dim x M]

@@ -37,10 +37,6 @@ namespace ddm {
 class DdmPlanCost : public PlanCost {
  public:
   static constexpr double kWidth = 0.5;  ///< w without a CostToGo [-]
-  /// Plans that proposal() keeps without a CostToGo. If it keeps all of them (81), two models of the
-  /// cart-pole return 864 and 863 instead of 861 and 863, and plans take a half longer.
-  static constexpr size_t kMaxHeldPlans = 9;
-
   /// std::monostate: eq. (9).
   using Terms = std::variant<std::monostate, SaturatingCost, CostToGo>;
 
@@ -71,8 +67,10 @@ class DdmPlanCost : public PlanCost {
   double evaluate(const Eigen::Ref<const Eigen::MatrixXd>& U, Eigen::MatrixXd* d_U) override;
   /// Proposes a plan by a beam search over the torques of SaturatingCost, each held for its
   /// kHoldSteps steps. With a CostToGo, only the best plan is continued after each decision, because
-  /// V tells where it leads. Without one, the best kMaxHeldPlans are, because no plan may come near
-  /// the goal before the last decision. Empty with eq. (9).
+  /// V tells where the plan leads. Without a CostToGo, the best 9^torque_dim plans are continued,
+  /// which is the number of plans with two decisions, because no plan may come near the goal before
+  /// the last decision. If all plans are continued, two models of the cart-pole return 864 and 863
+  /// instead of 861 and 863, and planning takes a half longer. Empty with eq. (9).
   std::optional<Eigen::MatrixXd> proposal() override;
   Eigen::MatrixXd predictedFeatures() const override;
   Eigen::VectorXd goalFeature() const override { return goal_feature_; }
