@@ -1,4 +1,4 @@
-// Topics of a bag: selects them, reads their torques, and pairs these with the images.
+// Topics of a bag: selects them, and pairs their torques with the images.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
