@@ -4,9 +4,7 @@
 
 #include <ddm_bag_io/bag_cache.h>
 #include <ddm_common/param_value.h>
-#include <ddm_common/plain_file.h>
 #include <ddm_common/random_stream.h>
-#include <ddm_common/yaml_text.h>
 #include <ddm_model/minimise.h>
 #include <ddm_model/per_motor.h>
 #include <ddm_sim/plant.h>
@@ -22,6 +20,7 @@
 #include <utility>
 
 #include "pilco/long_term_cost.h"
+#include "pilco/pilco_memory.h"
 #include "tables.h"
 
 namespace ddm {
@@ -51,35 +50,6 @@ std::pair<Eigen::MatrixXd, Eigen::MatrixXd> transitions(const DataSet& data,
     }
   }
   return {inputs, targets};
-}
-
-/// Converts a matrix to the list of its entries by columns, with all digits.
-/// @throws std::runtime_error if the matrix is not finite, because matrixOf() would refuse it
-YAML::Node matrixToYaml(const Eigen::MatrixXd& matrix) {
-  if (!matrix.allFinite()) {
-    throw std::runtime_error(
-        "PILCO: the policy or the GPs that were found are not finite: check the bags, or lower "
-        "policy_search/max_iterations or gp/max_iterations");
-  }
-  return valueToYaml(std::vector<double>(matrix.data(), matrix.data() + matrix.size()));
-}
-
-/// Restores a matrix of matrixToYaml().
-/// @param cols  number of columns; Eigen::Dynamic: any number
-Eigen::MatrixXd matrixOf(const YAML::Node& memory, const std::string& key, Eigen::Index rows,
-                         Eigen::Index cols) {
-  std::vector<double> entries;
-  if (!memory[key].IsDefined() || !parseValue(memory[key], &entries)) {
-    throw std::runtime_error(key + " must be a list of numbers");
-  }
-  const auto size = static_cast<Eigen::Index>(entries.size());
-  if (cols == Eigen::Dynamic) cols = size / rows;
-  if (size != rows * cols) {
-    throw std::runtime_error(textOf(key, " must have ", rows, " x ", cols, " entries, got ", size));
-  }
-  const Eigen::MatrixXd out = Eigen::Map<const Eigen::MatrixXd>(entries.data(), rows, cols);
-  if (!out.allFinite()) throw std::runtime_error(key + " must be finite");
-  return out;
 }
 
 /// Draws the parameters of the first RBF policy. The centres are drawn from the features of p(x_0),
@@ -181,15 +151,9 @@ YAML::Node readBlocks(ParamReader* reader) {
   return out;
 }
 
-/// Where the next training starts: the latest policy and the latest optimum of the GPs.
-struct Memory {
-  Eigen::VectorXd policy;     ///< parameters of the policy; empty if there is none yet
-  pilco::GpLearnerState gps;  ///< empty if there is none yet
-};
-
 /// Inputs and statistics of one training.
 struct Training {
-  Memory memory;
+  pilco::Memory memory;
   std::mt19937_64 rng;
   PhaseCallback progress;
   YAML::Node report{YAML::NodeType::Map};
@@ -213,9 +177,7 @@ class PilcoMethod : public Method {
     Training training{lastMemory(bags), randomStream(id, StreamRole::kPolicySearch), progress};
     pilco::Propagation dynamics = learnDynamics(data, observed, &training);
     const pilco::LongTermCost cost = improvePolicy(std::move(dynamics), observed.task, &training);
-    training.report["policy"] = matrixToYaml(training.memory.policy);
-    training.report["hyperparameters"] = matrixToYaml(training.memory.gps.hyperparameters);
-    training.report["inducing"] = matrixToYaml(training.memory.gps.inducing);
+    pilco::addMemory(training.memory, &training.report);
 
     TrainingOutcome outcome;
     outcome.files = observation_->files();
@@ -244,24 +206,12 @@ class PilcoMethod : public Method {
   }
 
  private:
-  /// @throws std::runtime_error with path and reason if the file is damaged or does not fit policy_
-  Memory readMemory(const std::string& file) const {
-    const std::string text = readFile(file);
-    try {
-      const YAML::Node root = parseYaml(text, file);
-      if (!root.IsMap()) throw std::runtime_error("must be a map");
-      const int gp_inputs = policy_->inputDim() + policy_->outputDim();
-      return {matrixOf(root, "policy", policy_->parameters().size(), 1),
-              {matrixOf(root, "hyperparameters", gp_inputs + 2, features_->inputDim()),
-               matrixOf(root, "inducing", gp_inputs, Eigen::Dynamic)}};
-    } catch (const std::exception& e) {
-      throw std::runtime_error(file + ": " + e.what() +
-                               ": PILCO goes on from this file, so use another run folder");
-    }
+  pilco::Memory readMemory(const std::string& file) const {
+    return pilco::readMemory(file, *policy_, features_->inputDim());
   }
 
   /// Reads the memory of the previous training, which is in the folder of the last trial but one.
-  Memory lastMemory(const std::vector<std::string>& bags) const {
+  pilco::Memory lastMemory(const std::vector<std::string>& bags) const {
     const size_t last_two_trials = 2 * static_cast<size_t>(configuration_.trial.episodes);
     if (bags.size() < last_two_trials || !observation_->keepsCoordinates()) return {};
     const boost::filesystem::path bag = bags[bags.size() - last_two_trials];
