@@ -4,8 +4,6 @@
 injected, so the moment of a fault is exact. The phase `training` is an exception: its fault comes when the first
 progress of the training arrives. The report contains the trials that were finished at that moment, and the torques that
 acted afterwards."""
-import copy
-import collections
 import json
 import multiprocessing
 import os
@@ -26,6 +24,7 @@ import yaml
 from ddm_launch.command import find_program
 from ddm_model.plain_file import write_file
 from ddm_qa.fault_cases import ON_A_ROBOT, REAL_TIME
+from ddm_qa.fault_changes import CHANGES
 from ddm_qa.processes import pid_of
 from ddm_qa.run_comparison import Finished
 
@@ -42,60 +41,6 @@ IMAGE_BYTES = 1 << 24  # a robot's camera may send images larger than rospy's de
 STOPS = {"pause": 0.6, "oversleep": 1.25, "hold": float("inf")}
 LIMITS = {"sim_node": ("controller", "timeout"), "mpc_node": ("sim", "watchdog")}
 OTHER_LIMIT = ("experiment", "timeout")
-
-# Changed fields of an altered image, torque or joint state.
-ALTERED = {
-    "nan": lambda torque: {"torque": [float("nan")]}, "inf": lambda torque: {"torque": [float("inf")]},
-    "1e300": lambda torque: {"torque": [1e300]}, "none": lambda torque: {"torque": []},
-    "twice": lambda torque: {"torque": list(torque.torque) * 2},
-    "size": lambda image: dict(dict.fromkeys(("width", "height", "step"), image.width // 2),
-                               data=image.data[:(image.width // 2) ** 2]),
-    "encoding": lambda image: {"encoding": "rgb8", "step": 3 * image.step, "data": 3 * image.data},
-    "unknown": lambda image: {"encoding": "smell"},
-    "cut": lambda image: {"data": image.data[:len(image.data) // 2]},
-    "unstamped": lambda image: {"header": type(image.header)(frame_id=image.header.frame_id)},
-    "upper half": lambda image: {"height": image.height // 2, "data": image.data[:image.step * (image.height // 2)]},
-    "position": lambda joints: {"position": [1.0e4]}, "speed": lambda joints: {"velocity": [1.0e4]}}
-
-
-def altered(message, how):
-    """Copy of a message with fields changed by ALTERED."""
-    result = copy.deepcopy(message)
-    for field, value in ALTERED[how](message).items():
-        setattr(result, field, value)
-    return result
-
-
-def shifted(message, seconds):
-    """Copy of a message with a shifted time stamp."""
-    result = copy.deepcopy(message)
-    result.header.stamp += rospy.Duration(seconds)
-    return result
-
-
-def late(message):
-    """Delays a message by 1 s."""
-    time.sleep(1.0)
-    return [message]
-
-
-# messages: function that returns the messages to relay in place of a message, from the message, its predecessor and the
-# last word of the fault. lasts: time during which messages are changed [s]; 0: one message. topic: changed topic; None:
-# the second word of the fault.
-Change = collections.namedtuple("Change", "messages lasts topic")
-CHANGES = {
-    "drop": Change(lambda message, before, how: [], 0, None),
-    "double": Change(lambda message, before, how: [message, message], 0, None),
-    "late": Change(lambda message, before, how: late(message), 0, None),
-    "repeat": Change(lambda message, before, how: [before, message], 0, None),
-    "alter": Change(lambda message, before, how: [altered(message, how)], 0, None),
-    "mute": Change(lambda message, before, how: [], float("inf"), None),
-    # Faults on a robot.
-    "future": Change(lambda message, before, how: [shifted(message, 3600.0)], 0, None),  # no further image follows
-    "set": Change(lambda message, before, how: [shifted(message, 3600.0 if how == "forward" else -3600.0)], 1.5, "image"),
-    "resize": Change(lambda message, before, how: [altered(message, "upper half")], float("inf"), None),
-    "age": Change(lambda message, before, how: [shifted(message, -2.0)], 1.5, None),
-    "exceed": Change(lambda message, before, how: [altered(message, how)], 0, "joints")}
 
 # Topics and message of a second publisher. On a robot, both torque topics are the same.
 INTRUDED = {"torque": (["torque", "plant/torque"], lambda: Torque(torque=[6.0])),
