@@ -153,6 +153,14 @@ TEST(PlanWithCostToGo, WeighsEachTorqueAtTheGoalByItsShareOfTheLargest) {
   EXPECT_NEAR(costOfStep(0.3, 1.0), costOfStep(0.0, 1.0), 1e-3) << "far from it";
 }
 
+/// The features of an arm that is folded to the wrong side can be so near to those of the goal.
+TEST(CostToGo, AStepThatOnlyLooksLikeTheGoalCostsMoreThanHalf) {
+  const CostToGo time = costTo({0.0, 0.0}, pushedModel(line()));
+  const SaturatingCost& step = time.stepCost();
+  EXPECT_GT(step.evaluate(Eigen::Vector2d(0.2 * step.spread(), 0.0), nullptr), 0.5);
+  EXPECT_LT(step.evaluate(Eigen::Vector2d(0.05 * step.spread(), 0.0), nullptr), 0.1);
+}
+
 TEST_F(PlansWithCostToGo, GoalAndExploringCountFromTheNextProblemOnHoweverOftenTheyChange) {
   const Eigen::MatrixXd U = Eigen::MatrixXd::Zero(2, kHorizon);
   const Eigen::Vector2d start(0.9, 0.95), goal(0.1, 0.0);

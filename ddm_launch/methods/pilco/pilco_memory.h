@@ -1,4 +1,4 @@
-// What a training of PILCO leaves for the next one, in a file.
+// Reads and writes the file from which the next training of PILCO starts.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 

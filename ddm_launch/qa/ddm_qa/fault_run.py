@@ -14,8 +14,8 @@ import rosbag
 from ddm_launch.command import Failure
 from ddm_launch.run_folder import is_finished
 from ddm_model.plain_file import write_file
-from ddm_qa.damage import damage, write
 from ddm_qa.fault_cases import AT_REST, FAULTS_OF_ROOT, ON_A_ROBOT, REAL_TIME
+from ddm_qa.fault_damage import damage, write
 from ddm_qa.processes import start_roslaunch
 from ddm_qa.run_comparison import Finished, differences, digest, digests, expected_files, read_bytes, read_rows
 

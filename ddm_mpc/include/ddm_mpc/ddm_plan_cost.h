@@ -37,6 +37,7 @@ namespace ddm {
 class DdmPlanCost : public PlanCost {
  public:
   static constexpr double kWidth = 0.5;  ///< w without a CostToGo [-]
+
   /// std::monostate: eq. (9).
   using Terms = std::variant<std::monostate, SaturatingCost, CostToGo>;
 
