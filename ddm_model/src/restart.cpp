@@ -118,7 +118,8 @@ RestartProblem::RestartProblem(const ModelOptions& model_options,
                                const TrainingData<float>& data)
     : model(model_options), training(training_options), schedule(makeSchedule(training_options)) {
   const Eigen::Index num_frames = data.torques.cols();
-  for (Eigen::Index count = kFirstPart; training.num_starts > 1 && count < num_frames; count *= 2) {
+  const Eigen::Index most = training.num_starts > 1 ? num_frames * 2 / 3 : 0;
+  for (Eigen::Index count = kFirstPart; count <= most; count *= 2) {
     parts.push_back(evenPart(data, count, model.order));
   }
   parts.push_back(data);

@@ -81,8 +81,9 @@ struct RestartProblem {
   TrainingOptions training;
   Schedule schedule;
   /// Parts of the data on which the last stage is minimised one after the other. A later part
-  /// contains twice as many samples, the last one all, so that the iterations grow with the
-  /// logarithm of the number of samples, and most of them need only few samples.
+  /// contains twice as many samples, so that the iterations grow with the logarithm of the number
+  /// of samples, and most of them need only few samples. The last part contains all samples, and
+  /// the part before it at most two thirds of them: a larger part would hardly differ from all.
   std::vector<TrainingData<float>> parts;
 
   /// @param data  all samples. A single restart has one part, all samples
