@@ -105,7 +105,7 @@ TEST_F(Trainer, KeepsTheBestOfSeveralStarts) {
 }
 
 TEST_F(Trainer, TheBestRestartContinuesAloneOnAllSamples) {
-  data_.append(testing::toyTrial(400, 3));  // parts of 200, 400 and all 460 samples
+  data_.append(testing::toyTrial(560, 3));  // parts of 200, 400 and all 620 samples
   training_.num_starts = 5;
   training_.function_tolerance = 0.0;
   training_.max_iterations = 40;
@@ -118,12 +118,20 @@ TEST_F(Trainer, TheBestRestartContinuesAloneOnAllSamples) {
   ASSERT_TRUE(result.model) << result.message;
   EXPECT_EQ(result.iterations, 5 * 80 + 40);
   EXPECT_DOUBLE_EQ(last, 1.0);
-  EXPECT_EQ(result.model->info().frames, 460U);
+  EXPECT_EQ(result.model->info().frames, 620U);
   EXPECT_LT(result.final_cost, 0.5 * result.initial_cost);
 }
 
+TEST_F(Trainer, SkipsAPartThatHardlyDiffersFromAllSamples) {
+  data_.append(testing::toyTrial(400, 3));  // parts of 200 and all 460 samples, without one of 400
+  training_.num_starts = 2;
+  training_.function_tolerance = 0.0;
+  training_.max_iterations = 40;
+  EXPECT_EQ(run().iterations, 2 * 40 + 40);
+}
+
 TEST_F(Trainer, AGaussianProcessPredictsTheFeaturesOfTheBetterHalfOfTheRestarts) {
-  data_.append(testing::toyTrial(160, 3));  // parts of 200 and all 220 samples
+  data_.append(testing::toyTrial(260, 3));  // parts of 200 and all 320 samples
   model_.predictor = "gp";
   training_.num_starts = 4;
   training_.function_tolerance = 0.0;
