@@ -19,7 +19,7 @@ def add_figures(parser, figures):
         for words, settings in figure.arguments:
             of_figure.add_argument(*words, **settings)
         of_figure.add_argument("--out", metavar="FILE" + figure.suffix, default=name + figure.suffix,
-                               help="picture to write; default %(default)s")
+                               help="image to write; default %(default)s")
 
         def work(options, draw=figure.draw):
             draw(options)

@@ -66,11 +66,11 @@ def save(figure, out):
     Raises Failure if the file name does not end in .png, OSError if the file cannot be written.
     """
     if not out.lower().endswith(".png"):
-        raise Failure("the picture must be a .png, got '%s': give --out another name" % out)
+        raise Failure("the figure must be a .png, got '%s': give --out another name" % out)
     figure.canvas.draw()
-    picture = Image.fromarray(np.asarray(figure.canvas.buffer_rgba())).convert("RGB")
-    picture = picture.quantize(256)  # halves the file; the colours of smoothed edges change by an invisible amount
-    save_picture(picture, out, "PNG", optimize=True, dpi=(figure.dpi, figure.dpi))
+    image = Image.fromarray(np.asarray(figure.canvas.buffer_rgba())).convert("RGB")
+    image = image.quantize(256)  # halves the file; the colours of smoothed edges change by an invisible amount
+    save_image(image, out, "PNG", optimize=True, dpi=(figure.dpi, figure.dpi))
 
 
 def panel_above_legend(figure):
@@ -93,8 +93,8 @@ def show_image(axes, image, **options):
     axes.set_yticks([])
 
 
-def save_picture(picture, out, file_format, **options):
+def save_image(image, out, file_format, **options):
     """Writes a PIL image into a file. Raises OSError if the file cannot be written."""
     stream = io.BytesIO()
-    picture.save(stream, format=file_format, **options)
+    image.save(stream, format=file_format, **options)
     write_file(out, stream.getvalue())

@@ -1,6 +1,7 @@
 # Draws evaluations as an animation of image, prediction and feature space, or as a strip of images.
 # SPDX-License-Identifier: BSD-3-Clause
 import collections
+import glob
 import math
 import os
 import re
@@ -9,24 +10,25 @@ import numpy as np
 from PIL import Image
 
 from ddm_launch.command import Failure, number
-from ddm_launch.figure_style import (BLUE, GREY, ORANGE, VERMILLION, Figure, argument, new_screen_figure, save, save_picture,
+from ddm_launch.figure_style import (BLUE, GREY, ORANGE, VERMILLION, Figure, argument, new_screen_figure, save, save_image,
                                      show_image)
 from ddm_launch.plant import draw_evaluation
 from ddm_launch.run_folder import read_setting, read_trials, read_yaml
 from ddm_model.model import load
+from ddm_model.model_data import ModelDataError, read_bags
 
 SUFFIX = ".webp"
 AHEAD_S = 1.0
 # Text below the features: distance from the left edge as a share of the width, word, and colour.
-FEATURES = (0.0, "features:", "black"), (0.34, "now", BLUE), (0.51, "plan", ORANGE), (0.68, "goal", VERMILLION), (0.85, "seen", GREY)
+FEATURES = (0.0, "features:", "black"), (0.36, "now", BLUE), (0.52, "plan", ORANGE), (0.68, "goal", VERMILLION), (0.84, "seen", GREY)
 LAST_MS = 1500  # duration of the last image of an evaluation [ms]
 EVALUATION = re.compile(r"evaluation_(\d+)$")
 STRIP_IMAGES = 12
 
-# One evaluation. title: text. dt: time step [s]. images: images  [N x size x size]. expected: image that was predicted
-# for each image, or None. features: projected features  [N x 2]. paths: for each image its feature and the features
-# predicted from it  [steps + 1 x 2]. support_states, goal: projected features  [.. x 2].
-Clip = collections.namedtuple("Clip", "title dt images expected features paths support_states goal")
+# One evaluation. title: text. dt: time step [s]. episode: an Episode. expected: for each image the image that was seen in
+# training and is nearest to the prediction, or None. features: projected features  [N x 2]. paths: for each image its feature and the features predicted from it
+# [steps + 1 x 2]. support_states, goal: projected features  [.. x 2].
+Clip = collections.namedtuple("Clip", "title dt episode expected features paths support_states goal")
 
 
 def plane_of(points):
@@ -38,6 +40,16 @@ def plane_of(points):
     return lambda features: (np.asarray(features) - mean) @ directions.T
 
 
+def seen_images(run, trial, image_size):
+    """Images of all bags up to a trial  [N x size x size]. Raises Failure if a bag cannot be read."""
+    folders = [os.path.join(run, "trial_%03d" % number) for number in range(trial + 1)]
+    bags = sorted(path for folder in folders for path in glob.glob(os.path.join(glob.escape(folder), "**", "*.bag"), recursive=True))
+    try:
+        return np.concatenate([bag["images"] for bag in read_bags(bags, image_size)])
+    except (ModelDataError, ValueError) as error:
+        raise Failure("the bags of %s cannot be read: %s" % (run, error)) from error
+
+
 def read_clip(evaluation):
     """Reads a folder RUN/evaluation_NNN and predicts its images. Returns a Clip. Raises Failure if the folder has
     another name, or if the model and the plant have different image sizes."""
@@ -47,21 +59,24 @@ def read_clip(evaluation):
         raise Failure("a film shows folders RUN/evaluation_NNN, got '%s'" % evaluation)
     run, trial = os.path.dirname(evaluation) or ".", int(found.group(1))
     model, trials = load(os.path.join(run, "trial_%03d" % trial, "model.ddm")), read_trials(os.path.join(run, "trials.csv"))
-    images, torques = draw_evaluation(run, trial)
+    episode = draw_evaluation(run, trial, with_views=True)
+    images, torques = episode.images, episode.torques.values
     if images.shape[1] != model.image_size:
         raise Failure("the plant of %s draws %d pixels and the model sees %d: film runs in which both are equal" % (
             run, images.shape[1], model.image_size))
     dt = float(read_setting(run, "plant/dt"))
     steps, n = max(1, round(AHEAD_S / dt)), model.options["order"]
     features, paths, expected = model.encode(images), [], [None] * len(images)
+    known = seen_images(run, trial, model.image_size)
+    known_features = model.encode(known)
     for now in range(len(images)):
         if now < n - 1:
             paths.append(features[now:now + 1])
             continue
-        ahead = model.roll_out(features[now - n + 1:now + 1], torques.values[now - n + 1:now + steps])
+        ahead = model.roll_out(features[now - n + 1:now + 1], torques[now - n + 1:now + steps])
         paths.append(np.concatenate([features[now:now + 1], ahead]))
         if now + steps < len(images):
-            expected[now + steps] = np.clip(255.0 * model.decode(ahead[-1:])[0], 0, 255)
+            expected[now + steps] = known[np.argmin(np.linalg.norm(known_features - ahead[-1], axis=1))]
     seen = model.support_states if len(model.support_states) > 1 else features
     project = plane_of(seen)
     # If the goal is drawn in each trial, the goal in the model belongs to another trial.
@@ -70,52 +85,73 @@ def read_clip(evaluation):
     title = re.sub(r".*/(.*)\.yaml$", r"\1", read_setting(run, "experiment/plant"))
     for count in trials[trials.trial == trial].frames:
         title += ", after {:,} images ({:g} s)".format(count, count * dt)
-    return Clip(title, dt, images, expected, project(features), [project(path) for path in paths], project(seen), goal)
+    return Clip(title, dt, episode, expected, project(features), [project(path) for path in paths], project(seen), goal)
 
 
-def pictures_of(clip, count):
-    """Draws RGB pictures for the first `count` images of a clip."""
-    points, pictures = np.concatenate([clip.support_states, clip.features]), []
+def draw_view(axes, view, goal):
+    """Draws the middle of an image for people, with the goal image in its corner."""
+    left = (view.shape[1] - view.shape[0]) // 2
+    axes.imshow(view[:, max(0, left):max(0, left) + view.shape[0]])
+    inset = axes.inset_axes([0.02, 0.70, 0.28, 0.28])
+    show_image(inset, goal)
+    inset.set_xlabel("goal", color="white", fontsize=7, labelpad=1)
+    for edge in inset.spines.values():
+        edge.set_edgecolor("white")
+
+
+def draw_plane(axes, clip, now, middle, reach):
+    """Draws the feature space with states that the model has seen, the goal, the latest features and the predicted ones."""
+    axes.plot(*clip.support_states.T, ".", color="#cccccc", markersize=2)
+    if clip.goal is not None:
+        axes.plot(*clip.goal.T, "o", color=VERMILLION, markersize=7)
+    axes.plot(*clip.features[max(0, now - 10):now + 1].T, color=GREY, linewidth=1)
+    axes.plot(*clip.paths[now].T, color=ORANGE, linewidth=2)
+    axes.plot(*clip.paths[now][0], "o", color=BLUE, markersize=5)
+    axes.set(xlim=(middle[0] - reach, middle[0] + reach), ylim=(middle[1] - reach, middle[1] + reach), aspect="equal")
+    for left, word, colour in FEATURES:
+        axes.text(left, -0.13, word, color=colour, fontsize=5.4, transform=axes.transAxes)
+
+
+def images_of(clip, count):
+    """Draws RGB images for the first `count` images of a clip."""
+    points, drawn = np.concatenate([clip.support_states, clip.features]), []
     middle, reach = 0.5 * (points.max(axis=0) + points.min(axis=0)), 0.55 * np.ptp(points, axis=0).max() + 1e-9
-    with new_screen_figure(4.3, 1.8) as figure:
-        panels = figure.subplots(1, 3)
-        for now, image in enumerate(clip.images[:count]):
-            for axes in panels:
+    with new_screen_figure(5.6, 3.0) as figure:
+        grid = figure.add_gridspec(2, 4)
+        robot = figure.add_subplot(grid[:, :2])
+        small = [figure.add_subplot(grid[row, column]) for row in (0, 1) for column in (2, 3)]
+        for now, image in enumerate(clip.episode.images[:count]):
+            for axes in (robot, *small):
                 axes.clear()
                 axes.tick_params(left=False, bottom=False, labelleft=False, labelbottom=False)
-            image_axes, expected_axes, plane = panels
-            show_image(image_axes, image)
-            # No prediction exists yet in the first second.
-            show_image(expected_axes, np.full_like(image, 238) if clip.expected[now] is None else clip.expected[now])
-            plane.plot(*clip.support_states.T, ".", color="#cccccc", markersize=2)
-            if clip.goal is not None:
-                plane.plot(*clip.goal.T, "o", color=VERMILLION, markersize=8)
-            plane.plot(*clip.features[max(0, now - 10):now + 1].T, color=GREY, linewidth=1)
-            plane.plot(*clip.paths[now].T, color=ORANGE, linewidth=2)
-            plane.plot(*clip.paths[now][0], "o", color=BLUE, markersize=6)
-            plane.set(xlim=(middle[0] - reach, middle[0] + reach), ylim=(middle[1] - reach, middle[1] + reach), aspect="equal")
-            image_axes.set_xlabel("image")
-            expected_axes.set_xlabel("predicted %g s ago" % AHEAD_S)
-            for left, word, colour in FEATURES:
-                plane.text(left, -0.13, word, color=colour, fontsize=6.2, transform=plane.transAxes)
-            figure.suptitle("%s:   %4.1f s" % (clip.title, now * clip.dt), x=0.02, horizontalalignment="left")
+            draw_view(robot, clip.episode.views[now], clip.episode.goal)
+            expected = clip.expected[now]
+            none = np.full_like(image, 238)  # no prediction exists yet in the first second
+            show_image(small[0], image)
+            show_image(small[1], none if expected is None else expected)
+            show_image(small[3], none if expected is None else 255 - np.abs(image.astype(float) - expected))
+            draw_plane(small[2], clip, now, middle, reach)
+            small[0].set_xlabel("the learner sees", fontsize=7)
+            small[1].set_xlabel("predicted %g s ago" % AHEAD_S, fontsize=7)
+            small[3].set_xlabel("difference", fontsize=7)
+            figure.suptitle("%s:   %4.1f s" % (clip.title, now * clip.dt), x=0.02, horizontalalignment="left", fontsize=9)
             figure.canvas.draw()
-            pictures.append(Image.fromarray(np.asarray(figure.canvas.buffer_rgba())).convert("RGB"))
-    return pictures
+            drawn.append(Image.fromarray(np.asarray(figure.canvas.buffer_rgba())).convert("RGB"))
+    return drawn
 
 
 def draw_film(options):
     """Draws evaluations one after the other into an animated WebP file."""
     if not options.out.lower().endswith(SUFFIX):
         raise Failure("a film must be a .webp, got '%s': give --out another name" % options.out)
-    pictures, durations = [], []
+    images, durations = [], []
     for evaluation in options.evaluations:
         clip = read_clip(evaluation)
-        shown = pictures_of(clip, 1 + round(options.seconds / clip.dt))
-        pictures += shown
+        shown = images_of(clip, 1 + round(options.seconds / clip.dt))
+        images += shown
         durations += [round(1000 * clip.dt)] * (len(shown) - 1) + [LAST_MS]
-    save_picture(pictures[0], options.out, "WEBP", save_all=True, append_images=pictures[1:], duration=durations, loop=0,
-                 quality=60, method=4)
+    save_image(images[0], options.out, "WEBP", save_all=True, append_images=images[1:], duration=durations, loop=0,
+               quality=60, method=4)
 
 
 def draw_strip(options):
@@ -123,7 +159,8 @@ def draw_strip(options):
     trials = read_trials(os.path.join(options.folder, "trials.csv"))
     successes = trials[trials.success > 0]
     trial = options.trial if options.trial is not None else (trials if successes.empty else successes).trial.iloc[-1]
-    images, torques = draw_evaluation(options.folder, trial)
+    episode = draw_evaluation(options.folder, trial)
+    images, torques = episode.images, episode.torques
     dt = float(read_setting(options.folder, "plant/dt"))
     shown = max(1, min(round(options.seconds / dt), len(images)))
     steps = range(0, shown, math.ceil(shown / STRIP_IMAGES))
@@ -147,10 +184,10 @@ def draw_strip(options):
 
 
 FILM = Figure(
-    "Greedy evaluations of run folders, one after the other. Left: the image, without nuisances of the camera. Middle: the "
-    "image that the model predicted one second earlier, given the torques applied since. Right: the feature space, with states "
-    "that the model has seen (grey), the goal (red), the current image (blue) and the features predicted from it under the "
-    "torques to come (orange).",
+    "Greedy evaluations of run folders, one after the other. Left: the plant and the goal image. Right: the image of the learner, "
+    "without nuisances of the camera; what the model predicted one second earlier, given the torques applied since, as the image "
+    "seen in training whose feature is nearest to the predicted one; their difference; and the feature space, with states that the model has seen (grey), the goal (red), the current image "
+    "(blue) and the features predicted from it under the torques to come (orange).",
     [argument("evaluations", metavar="RUN/evaluation_NNN", nargs="+", help="shown one after the other"),
      argument("--seconds", type=number(float, 0), default=10.0, help="of each, default %(default)g")], draw_film, SUFFIX)
 STRIP = Figure(

@@ -67,7 +67,7 @@ def draw_model_errors(axes, table):
     axes.legend(loc="upper right")
 
 
-def picture(text):
+def image_of(text):
     """Draws the image for a message on the topic `trials`: 640 x 480 pixels, RGB. The curves start at the left edge and
     grow to the right."""
     news = yaml.load(text, Loader=LOADER)
@@ -92,7 +92,7 @@ def picture(text):
 def main_of_node():
     rospy.init_node("learning_curve_node")
     publisher = rospy.Publisher("learning_curve_image", Image, queue_size=1, latch=True)
-    rospy.Subscriber("trials", String, lambda trials: publisher.publish(picture(trials.data)), queue_size=1)
+    rospy.Subscriber("trials", String, lambda trials: publisher.publish(image_of(trials.data)), queue_size=1)
     rospy.spin()
     return 0
 

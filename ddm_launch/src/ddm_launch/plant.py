@@ -1,5 +1,6 @@
 # Describes and draws plants, by the program simulate and the Python bindings.
 # SPDX-License-Identifier: BSD-3-Clause
+import collections
 import math
 import os
 import subprocess
@@ -35,10 +36,19 @@ class Joints:
         return np.where(circular, np.abs((difference + math.pi) % (2.0 * math.pi) - math.pi), difference)
 
 
-def draw_images(folder, start, torques=(), **episode):
-    """Simulates the plant of a run folder and returns its grey images, without disturbances of the camera
-    [N + 1 x size x size]. start: initial state. torques: [N x motors]. episode: seed and options of reset(), which
-    select the goal of plants that draw it. Raises Failure if the Python bindings are missing."""
+# An episode that was simulated again. images: grey images, one more than torques  [N + 1 x size x size]. views: images for
+# people, one for each torque, or none  [N x height x width x 3]. goal: goal image  [size x size]. torques: table with a column for each motor.
+Episode = collections.namedtuple("Episode", "images views goal torques")
+
+
+def grey(image):
+    return np.asarray(Image.fromarray(image).convert("L"))
+
+
+def draw_images(folder, start, torques=(), with_views=False, **episode):
+    """Simulates the plant of a run folder, without disturbances of the camera. start: initial state. torques: [N x motors].
+    with_views: whether to draw images for people, too. episode: seed and options of reset(), which select the goal of
+    plants that draw it. Returns an Episode without torques. Raises Failure if the Python bindings are missing."""
     try:
         import ddm_sim  # pylint: disable=import-outside-toplevel
     except ImportError as error:
@@ -46,19 +56,23 @@ def draw_images(folder, start, torques=(), **episode):
     plant = read_setting(folder, "experiment/plant")
     env = ddm_sim.make(plant, plant=read_yaml(os.path.join(folder, "config.yaml")).get("plant", {}))
     seed = episode.pop("seed", 0)
-    images = [env.reset(seed=seed, options=dict(episode, start=start))[0]] + [env.step(torque)[0] for torque in torques]
-    return np.array([np.asarray(Image.fromarray(image).convert("L")) for image in images])
+    image, info = env.reset(seed=seed, options=dict(episode, start=start))
+    images, views, goal = [grey(image)], [], grey(info["goal_image"])
+    for torque in torques:
+        if with_views:
+            views.append(env.render())
+        images.append(grey(env.step(torque)[0]))
+    return Episode(np.array(images), np.array(views), goal, None)
 
 
-def draw_evaluation(run, trial):
-    """Simulates an evaluation of a run folder again. Returns (rendered images, one per torque  [N x size x size]; table
-    of torques with a column for each motor). Raises Failure if the camera has lost frames, or if a file cannot be
-    read."""
+def draw_evaluation(run, trial, with_views=False):
+    """Simulates an evaluation of a run folder again. Returns an Episode with one image and view for each torque. Raises
+    Failure if the camera has lost frames, or if a file cannot be read."""
     folder = os.path.join(run, "evaluation_%03d" % trial)
     trajectory = read_table(os.path.join(folder, "trajectory.csv"), "time_s")
     if np.any(np.diff(trajectory.time_s) > 1.5 * float(read_setting(run, "plant/dt"))):
         raise Failure("in %s the camera has lost frames: only evaluations without camera/drop_rate can be drawn" % folder)
     torques = read_torques(folder)
-    images = draw_images(run, trajectory.drop(columns=["step", "time_s"]).iloc[0], torques.values, trial=trial, evaluation=True,
-                         seed=int(read_setting(run, "experiment/seed")))
-    return images[:len(torques)], torques
+    episode = draw_images(run, trajectory.drop(columns=["step", "time_s"]).iloc[0], torques.values, with_views, trial=trial,
+                          evaluation=True, seed=int(read_setting(run, "experiment/seed")))
+    return episode._replace(images=episode.images[:len(torques)], torques=torques)

@@ -49,7 +49,7 @@ def draw_strip(options):
     strip = read_table(options.folder, "strip.csv")
     features = [name for name in strip if name.startswith("z_")]
     states = strip.drop(columns=features + ["steps"])
-    images = (("true", [draw_images(options.folder, state)[0] for state in states.values]),
+    images = (("true", [draw_images(options.folder, state).images[0] for state in states.values]),
               ("predicted", decode(os.path.join(options.folder, "model.ddm"), strip[features].values)))
     with new_figure(PAGE_WIDTH, 1.85) as figure:
         axes = figure.subplots(2, len(strip))
