@@ -29,8 +29,8 @@ class ShootingPolicy : public ddm::Policy {
     rng_ = ddm::randomStream(id, ddm::StreamRole::kPlannerStarts);
   }
   void startSegment() override { x_.clear(); }
-  void setGoal(const ddm::Grey& goal) override { z_ref_ = model_->encode(goal); }
-  void observe(const ddm::Grey& grey) override { x_.observe(model_->encode(grey)); }
+  void setGoal(const ddm::Image& goal) override { z_ref_ = model_->encode(goal); }
+  void observe(const ddm::Image& image) override { x_.observe(model_->encode(image)); }
   void apply(const Eigen::VectorXd& u) override { x_.apply(u); }
 
   ddm::Answer answer() override {

@@ -48,7 +48,7 @@ void runClosedLoop(Environment* environment, std::shared_ptr<Policy> policy,
   options.max_torque =
       perMotor(configuration.mpc.max_torque, environment->plant().torqueDim(), "mpc/max_torque");
   EpsilonGreedy explorer(request.epsilon < 1.0 ? std::move(policy) : nullptr, options, id);
-  Picture picture = environment->reset(id.seed, id.trial, id.evaluation);
+  RenderedImage rendered = environment->reset(id.seed, id.trial, id.evaluation);
   explorer.setGoal(
       decodeImage(imageMessage(environment->goalImage(), stampOf(*environment)), image_size));
   const std::string optical_frame = opticalFrame(environment->plant().cameraModel());
@@ -56,13 +56,13 @@ void runClosedLoop(Environment* environment, std::shared_ptr<Policy> policy,
   for (frame.index = 0; frame.index < request.num_steps; ++frame.index) {
     if (frame.index > 0) {
       const std::uint64_t steps = environment->numSteps();
-      picture = environment->stepUntilSeen(frame.decision.torque);
+      rendered = environment->stepUntilSeen(frame.decision.torque);
       // After a lost image, a new segment begins.
       if (environment->numSteps() > steps + 1) explorer.startSegment();
     }
-    frame.image = imageMessage(picture, stampOf(*environment), optical_frame);
-    frame.grey = decodeImage(frame.image, image_size);
-    frame.decision = explorer.decide(frame.grey);
+    frame.image = imageMessage(rendered, stampOf(*environment), optical_frame);
+    frame.seen = decodeImage(frame.image, image_size);
+    frame.decision = explorer.decide(frame.seen);
     take(frame);
   }
 }

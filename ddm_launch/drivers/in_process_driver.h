@@ -3,7 +3,7 @@
 #pragma once
 
 #include <ddm_mpc/controller.h>
-#include <ddm_plant_plugin/picture_message.h>
+#include <ddm_plant_plugin/image_message.h>
 #include <ddm_sim/environment.h>
 #include <sensor_msgs/Image.h>
 
@@ -21,7 +21,7 @@ namespace ddm {
 struct ClosedLoopFrame {
   int index = 0;  ///< number of the image in this episode, from 0
   sensor_msgs::Image image;
-  Grey grey;  ///< the image as the learner receives it
+  Image seen;  ///< the image as the learner receives it
   Decision decision;
 };
 

@@ -42,9 +42,11 @@ void requireFits(const std::string& path, const Configuration& configuration, co
                  DifferentBags* different) {
   const bool robot = configuration.robot.has_value();
   const int size = configuration.model.image.size;
-  const Picture picture = robot ? Picture{size, size, 1, {}, {}} : plant.render(plant.state());
-  const std::string camera = std::to_string(picture.width) + "x" + std::to_string(picture.height) +
-                             (picture.channels == 1 ? " mono8" : " rgb8");
+  const RenderedImage rendered =
+      robot ? RenderedImage{size, size, 1, {}, {}} : plant.render(plant.state());
+  const std::string camera = std::to_string(rendered.width) + "x" +
+                             std::to_string(rendered.height) +
+                             (rendered.channels == 1 ? " mono8" : " rgb8");
   const auto torque_dim = static_cast<int>(torqueNames(configuration).size());
   const double dt = robot ? configuration.robot->dt : plant.info().dt;
   const BagContent bag = readBag(path, size, configuration.model.data_set);

@@ -102,7 +102,7 @@ class OraclePolicy : public Policy {
     planner_.clear();
     rng_ = randomStream(id, StreamRole::kPlannerStarts);
   }
-  void observe(const Grey& /*grey*/) override {}
+  void observe(const Image& /*image*/) override {}
   Answer answer() override { return answerWith(planner_.solve(&rng_)); }
   void apply(const Eigen::VectorXd& /*u*/) override {}
 

@@ -97,7 +97,7 @@ class Replay {
   }
 
   /// @return the torque that mpc_node computes for an image [N m]
-  Eigen::VectorXd propose(const Grey& grey, int size, const Eigen::VectorXd& recorded) {
+  Eigen::VectorXd propose(const Image& grey, int size, const Eigen::VectorXd& recorded) {
     const ros::Time stamp = ros::Time::now();
     ddm_msgs::Torque torque;
     torque.header.stamp = stamp;

@@ -115,17 +115,17 @@ TEST_F(InProcessDriverTest, FramesAndGoalAreThoseOfTheCameraInThisRun) {
   const BagContent content = bag();
   const auto plant = makePlant(*configuration_.plant);
   Camera camera(configuration_.camera, configuration_.plant_info.dt);
-  const auto photographed = [&] { return camera.photograph(plant->render(plant->state())); };
+  const auto capture = [&] { return camera.capture(plant->render(plant->state())); };
   camera.begin(7, 2, false);
-  EXPECT_EQ(content.data.goal(), camera.photographGoal(plant->render(plant->goal())).bytes);
+  EXPECT_EQ(content.data.goal(), camera.captureGoal(plant->render(plant->goal())).bytes);
   plant->setState(outcome.states[0]);
   for (Eigen::Index t = 0; t < 40; ++t) {
-    auto photograph = photographed();
-    while (!photograph) {
+    auto captured = capture();
+    while (!captured) {
       plant->step(outcome.torques[static_cast<size_t>(t) - 1]);
-      photograph = photographed();
+      captured = capture();
     }
-    ASSERT_EQ(content.data.image(t), photograph->bytes) << t;
+    ASSERT_EQ(content.data.image(t), captured->bytes) << t;
     plant->step(outcome.torques[static_cast<size_t>(t)]);
   }
 }
@@ -136,7 +136,7 @@ testing::ToyPlant::Traits wandering() {
   testing::ToyPlant::Traits traits = testing::colourfulToy();
   traits.draw = [](const Eigen::VectorXd& state) {
     const double grey = 128.0 + 40.0 * state[0];
-    return testing::plainPicture(
+    return testing::plainImage(
         51, static_cast<std::uint8_t>(std::lround(std::min(255.0, std::max(0.0, grey)))));
   };
   return traits;
@@ -145,12 +145,12 @@ testing::ToyPlant::Traits wandering() {
 TEST_F(InProcessDriverTest, EachRunHasAGoalOfItsOwnInItsBagWhereThePlantDrawsOne) {
   testing::usePlant(testing::plantOf(wandering()), &configuration_);
   const auto plant = makePlant(*configuration_.plant);
-  std::set<Grey> goals;
+  std::set<Image> goals;
   for (const std::uint32_t trial : {0U, 1U, 2U}) {
     request_.id.trial = trial;
     request_.bag = scratch_.file(std::to_string(trial) + ".bag");
     run();
-    const Grey expected = plant->render(goalOf(*plant, 7, trial, false)).bytes;
+    const Image expected = plant->render(goalOf(*plant, 7, trial, false)).bytes;
     EXPECT_EQ(bag().data.goal(), expected) << trial;
     goals.insert(expected);
   }
@@ -161,12 +161,12 @@ TEST_F(InProcessDriverTest, EachRunHasAGoalOfItsOwnInItsBagWhereThePlantDrawsOne
 class Onlooker : public Policy {
  public:
   void startTrial(const TrialId& /*id*/) override {}
-  void setGoal(const Grey& goal) override { goals.insert(goal); }
-  void observe(const Grey& /*grey*/) override {}
+  void setGoal(const Image& goal) override { goals.insert(goal); }
+  void observe(const Image& /*grey*/) override {}
   Answer answer() override { return {Eigen::VectorXd::Zero(1), 0.0, {}}; }
   void apply(const Eigen::VectorXd& /*u*/) override {}
 
-  std::set<Grey> goals;
+  std::set<Image> goals;
 };
 
 TEST_F(InProcessDriverTest, ShowsThePolicyTheGoalOfEachTrial) {
@@ -174,7 +174,7 @@ TEST_F(InProcessDriverTest, ShowsThePolicyTheGoalOfEachTrial) {
   Environment environment(makePlant(*configuration_.plant), configuration_.camera);
   const auto onlooker = std::make_shared<Onlooker>();
   request_.epsilon = 0.0;
-  std::set<Grey> expected;
+  std::set<Image> expected;
   for (request_.id.trial = 0; request_.id.trial < 3; ++request_.id.trial) {
     runClosedLoop(&environment, onlooker, request_, configuration_, [](const auto&) {});
     expected.insert(environment.goalImage().bytes);

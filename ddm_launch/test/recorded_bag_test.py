@@ -27,7 +27,7 @@ NAMES = ["--image-topic", IMAGE_TOPIC, "--torque-topic", TORQUE_TOPIC, "--dt", s
 def simulate(folder, torques, *options):
     """JPEG files of a simulated pendulum at the rate of the camera, one per torque."""
     folder.mkdir()
-    (folder / "camera.yaml").write_text("plant: {dt: %.17g, picture_size: 102}\n" % (1.0 / CAMERA_HZ))
+    (folder / "camera.yaml").write_text("plant: {dt: %.17g, image_size: 102}\n" % (1.0 / CAMERA_HZ))
     (folder / "torques.csv").write_text("torque_nm\n" + "".join("%r\n" % torque for torque in torques))
     with open(folder / "torques.csv") as stream:
         subprocess.run([find_program("simulate", "ddm_sim"), "--plant", "pendulum", "--config", folder / "camera.yaml", "--frames",

@@ -47,7 +47,7 @@ class StartTest : public ::testing::Test {
     pca.variance = Eigen::VectorXd::Ones(options.pca_dim);
     const Eigen::VectorXd theta =
         Eigen::VectorXd::Zero(Networks<double>(options, torque_dim).numParams());
-    return std::make_shared<const Ddm>(options, image_size, torque_dim, pca, theta, Grey(),
+    return std::make_shared<const Ddm>(options, image_size, torque_dim, pca, theta, Image(),
                                        ModelInfo());
   }
 

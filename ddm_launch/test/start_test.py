@@ -74,7 +74,7 @@ def test_what_cannot_be_started_from_is_refused_and_leaves_no_folder(before, tmp
     out, bag, tile = str(tmp_path / "out"), before.bags[0], ["--plant", "moving_tile"]
     for words, arguments in (
             (["bag " + bag, "the plant", "(dt): 0.2 ", ", 0.1 "], ["--set", "plant/dt=0.1", "--bags", bag]),
-            (["bag " + bag, "images: 51x51 mono8 ", ", 40x40 mono8 "], ["--set", "plant/picture_size=40", "--bags", bag]),
+            (["bag " + bag, "images: 51x51 mono8 ", ", 40x40 mono8 "], ["--set", "plant/image_size=40", "--bags", bag]),
             (["bag " + bag, "torques", ": 1 ", ", 2 "], ["--bags", bag, *tile]),
             (["model " + before.model, "torques of 1", "plant 2"], ["--model", before.model, *tile]),
             (["size 51", "image/size is 40"], ["--set", "image/size=40", "--model", before.model]),

@@ -127,7 +127,7 @@ inline std::map<std::string, std::string> fingerprintOf(const std::string& folde
 inline void writeToyBag(const std::string& path) {
   const int size = ImageOptions().size;
   BagWriter bag(path, BagOptions());
-  bag.write(encodeImage(Grey(static_cast<std::size_t>(size) * size, 0), size, ros::Time(1.0), ""));
+  bag.write(encodeImage(Image(static_cast<std::size_t>(size) * size, 0), size, ros::Time(1.0), ""));
   ddm_msgs::Torque torque;
   torque.header.stamp = ros::Time(1.0);
   torque.torque = {0.0};

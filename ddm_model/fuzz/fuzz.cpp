@@ -72,7 +72,7 @@ void checkModel(const Ddm& model) {
   require(model.theta().allFinite() && model.pca().variance.allFinite(), "numbers are finite");
   require(std::isfinite(model.info().v_r) && std::isfinite(model.info().v_p), "errors are finite");
   require(model.options().problems().empty(), "options are valid");
-  require(model.encode(Grey(num_pixels, 255)).size() == model.featureDim(),
+  require(model.encode(Image(num_pixels, 255)).size() == model.featureDim(),
           "an image has a feature");
   require(model.decode(Eigen::VectorXd::Zero(model.featureDim())).size() == num_pixels,
           "a feature has an image");

@@ -45,7 +45,7 @@ DataSet dataOf(const py::iterable& episodes, const py::object& goal, int image_s
     }
     if (!data) data = std::make_unique<DataSet>(image_size, static_cast<int>(torques.rows()));
     for (Eigen::Index t = 0; t < torques.cols(); ++t) {
-      data->append(images.grey(t, image_size), torques.col(t), t == 0);
+      data->append(images.greyValues(t, image_size), torques.col(t), t == 0);
     }
   }
   if (!data) {
@@ -57,7 +57,7 @@ DataSet dataOf(const py::iterable& episodes, const py::object& goal, int image_s
       throw py::value_error("goal must have the size of the images, " + size + ", got " +
                             image.size() + ": take it with the same camera");
     }
-    data->setGoal(image.grey(0, image_size));
+    data->setGoal(image.greyValues(0, image_size));
   }
   return *std::move(data);
 }
@@ -148,7 +148,7 @@ py::array_t<double> encode(const Ddm& model, const py::object& images) {
   const Images all(images, "images");
   Eigen::MatrixXd features(model.featureDim(), all.count());
   for (Eigen::Index i = 0; i < features.cols(); ++i) {
-    features.col(i) = model.encode(all.grey(i, model.imageSize()));
+    features.col(i) = model.encode(all.greyValues(i, model.imageSize()));
   }
   return rowsOf(features);
 }
@@ -158,7 +158,7 @@ py::array_t<std::uint8_t> decode(const Ddm& model, const py::object& features) {
   const Eigen::Index size = model.imageSize();
   py::array_t<std::uint8_t> images({all.cols(), size, size});
   for (Eigen::Index i = 0; i < all.cols(); ++i) {
-    const Grey image = model.decode(all.col(i));
+    const Image image = model.decode(all.col(i));
     std::copy(image.begin(), image.end(), images.mutable_data() + i * size * size);
   }
   return images;

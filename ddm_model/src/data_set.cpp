@@ -14,10 +14,10 @@ DataSet::DataSet(int image_size, int torque_dim)
   }
 }
 
-void DataSet::append(const Grey& grey, const Eigen::VectorXd& torque, bool new_segment) {
-  if (static_cast<Eigen::Index>(grey.size()) != numPixels()) {
+void DataSet::append(const Image& image, const Eigen::VectorXd& torque, bool new_segment) {
+  if (static_cast<Eigen::Index>(image.size()) != numPixels()) {
     throw std::invalid_argument("data set: an image must have " + std::to_string(numPixels()) +
-                                " pixels, got " + std::to_string(grey.size()));
+                                " pixels, got " + std::to_string(image.size()));
   }
   if (torque.size() != torque_dim_) {
     throw std::invalid_argument("data set: a torque must have " + std::to_string(torque_dim_) +
@@ -25,7 +25,7 @@ void DataSet::append(const Grey& grey, const Eigen::VectorXd& torque, bool new_s
   }
   if (!torque.allFinite()) throw std::invalid_argument("data set: a torque must be finite");
   if (new_segment || segments_.empty()) segments_.push_back({num_frames_, 0});
-  images_.push_back(std::make_shared<const Grey>(grey));
+  images_.push_back(std::make_shared<const Image>(image));
   torques_.insert(torques_.end(), torque.data(), torque.data() + torque.size());
   ++segments_.back().size;
   ++num_frames_;
@@ -44,16 +44,16 @@ void DataSet::append(const DataSet& other) {
   if (other.hasGoal()) goal_ = other.goal_;
 }
 
-void DataSet::setGoal(const Grey& grey) {
-  if (static_cast<Eigen::Index>(grey.size()) != numPixels()) {
+void DataSet::setGoal(const Image& image) {
+  if (static_cast<Eigen::Index>(image.size()) != numPixels()) {
     throw std::invalid_argument("goal image: must have " + std::to_string(numPixels()) +
-                                " pixels, got " + std::to_string(grey.size()));
+                                " pixels, got " + std::to_string(image.size()));
   }
-  goal_ = grey;
+  goal_ = image;
 }
 
-GreyMatrix DataSet::pixels(Eigen::Index begin, Eigen::Index size) const {
-  GreyMatrix out(numPixels(), size);
+ImageMatrix DataSet::pixels(Eigen::Index begin, Eigen::Index size) const {
+  ImageMatrix out(numPixels(), size);
   for (Eigen::Index i = 0; i < size; ++i) {
     out.col(i) = Eigen::Map<const Eigen::Matrix<std::uint8_t, Eigen::Dynamic, 1>>(
         image(begin + i).data(), numPixels());

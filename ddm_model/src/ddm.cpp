@@ -45,7 +45,7 @@ Eigen::Index numCentres(const ModelOptions& options, int torque_dim, Eigen::Inde
 }  // namespace
 
 Ddm::Ddm(ModelOptions options, int image_size, int torque_dim, Pca pca, Eigen::VectorXd theta,
-         Grey goal, ModelInfo info)
+         Image goal, ModelInfo info)
     : options_(std::move(options)),
       image_size_(image_size),
       networks_(options_, torque_dim, numCentres(options_, torque_dim, theta.size())),
@@ -76,22 +76,22 @@ Ddm::Ddm(ModelOptions options, int image_size, int torque_dim, Pca pca, Eigen::V
   requireFinite("feature of the goal image", goal_feature_);
 }
 
-Eigen::VectorXd Ddm::encode(const Grey& grey) const {
-  if (static_cast<Eigen::Index>(grey.size()) != pca_.mean.size()) {
+Eigen::VectorXd Ddm::encode(const Image& image) const {
+  if (static_cast<Eigen::Index>(image.size()) != pca_.mean.size()) {
     throw std::invalid_argument("model: an image must have " + std::to_string(pca_.mean.size()) +
-                                " pixels, got " + std::to_string(grey.size()));
+                                " pixels, got " + std::to_string(image.size()));
   }
   Mlp<double>::Tape tape;  // eq. (3a)
-  networks_.encoder().forward(networks_.encoderOf(theta_.data()), projection_(grey), &tape);
+  networks_.encoder().forward(networks_.encoderOf(theta_.data()), projection_(image), &tape);
   return tape.output();
 }
 
-Grey Ddm::decode(const Eigen::VectorXd& z) const {
+Image Ddm::decode(const Eigen::VectorXd& z) const {
   Mlp<double>::Tape tape;  // eq. (3b)
   networks_.decoder().forward(networks_.decoderOf(theta_.data()), z, &tape);
   const Eigen::MatrixXd scores = tape.output();
   const Eigen::MatrixXf image = pca_.reconstruct(scores.cast<float>());
-  Grey grey(image.size());
+  Image grey(image.size());
   for (Eigen::Index i = 0; i < image.size(); ++i) {
     grey[i] = static_cast<std::uint8_t>(
         std::lround(255.0F * std::min(1.0F, std::max(0.0F, image(i, 0)))));

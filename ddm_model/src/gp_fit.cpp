@@ -132,18 +132,18 @@ DenseGp fitDense(const Eigen::MatrixXd& regressors, const Eigen::MatrixXd& chang
   MinimiseOptions options;
   options.max_iterations = kMaxIterations;
   options.function_tolerance = 1e-5;
-  options.on_iteration = [&check](const Minimum&) {
+  options.on_iteration = [&check](const SolverResult&) {
     check();
     return true;
   };
-  const Minimum minimum =
+  const SolverResult result =
       minimise(negativeLogLikelihood(columnsOf(inputs, drawn), columnsOf(gp.outputs, drawn)), start,
                options);
-  gp.p = minimum.x;
+  gp.p = result.x;
   const auto count = static_cast<double>(drawn.size());
   const auto num_params = static_cast<double>(gp.p.size() + gp.slope.size());
   const auto all = static_cast<double>(N);
-  gp.criterion = all / count * minimum.cost + all * gp.output_spread.array().log().sum() +
+  gp.criterion = all / count * result.cost + all * gp.output_spread.array().log().sum() +
                  0.5 * num_params * std::log(all * static_cast<double>(changes.rows()));
   return gp;
 }

@@ -50,7 +50,8 @@ class Search : public ceres::IterationCallback {
     const double last = accepted_cost_;
     accepted_cost_ = summary.cost;
     best_.iterations = summary.iteration;
-    if (options_.on_iteration && !options_.on_iteration(best_)) ended_by_ = MinimumReason::kStopped;
+    if (options_.on_iteration && !options_.on_iteration(best_))
+      ended_by_ = TerminationReason::kStopped;
     if (ended_by_) return ceres::SOLVER_ABORT;
     if (summary.iteration == 0) return ceres::SOLVER_CONTINUE;
     const double magnitude = std::max(std::abs(last), std::abs(summary.cost));
@@ -60,13 +61,14 @@ class Search : public ceres::IterationCallback {
   }
 
   /// @param summary  summary of the solver after its end
-  Minimum result(const ceres::GradientProblemSolver::Summary& summary) && {
+  SolverResult result(const ceres::GradientProblemSolver::Summary& summary) && {
     // Only USER_SUCCESS, which operator() returns, means convergence. Ceres also reports
     // convergence when a line search returns to its initial point.
     best_.reason = reason(summary.termination_type == ceres::USER_SUCCESS,
                           summary.termination_type == ceres::NO_CONVERGENCE);
     best_.message = message();
-    if (best_.reason == MinimumReason::kNoDecrease && summary.termination_type == ceres::FAILURE) {
+    if (best_.reason == TerminationReason::kNoDecrease &&
+        summary.termination_type == ceres::FAILURE) {
       best_.message += ": " + summary.message;
     }
     return std::move(best_);
@@ -79,36 +81,36 @@ class Search : public ceres::IterationCallback {
   bool ended() {
     if (!ended_by_ && options_.max_evaluations > 0 &&
         best_.evaluations >= options_.max_evaluations) {
-      ended_by_ = MinimumReason::kEvaluationLimit;
+      ended_by_ = TerminationReason::kEvaluationLimit;
     }
-    if (!ended_by_ && options_.stop && options_.stop()) ended_by_ = MinimumReason::kStopped;
+    if (!ended_by_ && options_.stop && options_.stop()) ended_by_ = TerminationReason::kStopped;
     return ended_by_.has_value();
   }
 
   double slope() const { return best_.gradient.lpNorm<Eigen::Infinity>(); }
 
-  MinimumReason reason(bool hardly_changed, bool iteration_limit) const {
+  TerminationReason reason(bool hardly_changed, bool iteration_limit) const {
     if (ended_by_) return *ended_by_;
-    if (!anyPoint()) return MinimumReason::kStartFailed;
+    if (!anyPoint()) return TerminationReason::kStartFailed;
     if (slope() <= options_.gradient_tolerance || (hardly_changed && best_.improved())) {
-      return MinimumReason::kConverged;
+      return TerminationReason::kConverged;
     }
-    return iteration_limit ? MinimumReason::kIterationLimit : MinimumReason::kNoDecrease;
+    return iteration_limit ? TerminationReason::kIterationLimit : TerminationReason::kNoDecrease;
   }
 
   std::string message() const {
     switch (best_.reason) {
-      case MinimumReason::kConverged:
+      case TerminationReason::kConverged:
         return "converged";
-      case MinimumReason::kIterationLimit:
+      case TerminationReason::kIterationLimit:
         return "limit of iterations reached";
-      case MinimumReason::kEvaluationLimit:
+      case TerminationReason::kEvaluationLimit:
         return "limit of evaluations reached";
-      case MinimumReason::kStopped:
+      case TerminationReason::kStopped:
         return "stopped";
-      case MinimumReason::kStartFailed:
+      case TerminationReason::kStartFailed:
         return "the function cannot be evaluated at the start";
-      case MinimumReason::kNoDecrease:
+      case TerminationReason::kNoDecrease:
         break;
     }
     std::ostringstream text;
@@ -119,11 +121,12 @@ class Search : public ceres::IterationCallback {
 
   const DifferentiableFunction& f_;
   const MinimiseOptions& options_;
-  Minimum best_;
+  SolverResult best_;
   Eigen::VectorXd point_;
   Eigen::VectorXd slope_;
-  double accepted_cost_ = 0.0;             // of the last iteration
-  std::optional<MinimumReason> ended_by_;  // limit that ended the search, unless Ceres checks it
+  double accepted_cost_ = 0.0;  // of the last iteration
+  std::optional<TerminationReason>
+      ended_by_;  // limit that ended the search, unless Ceres checks it
 };
 
 class CeresFunction : public ceres::FirstOrderFunction {
@@ -154,8 +157,8 @@ ceres::GradientProblemSolver::Options solverOptions(const MinimiseOptions& optio
 
 }  // namespace
 
-Minimum minimise(const DifferentiableFunction& f, const Eigen::VectorXd& start,
-                 const MinimiseOptions& options) {
+SolverResult minimise(const DifferentiableFunction& f, const Eigen::VectorXd& start,
+                      const MinimiseOptions& options) {
   if (start.size() == 0 || !start.allFinite()) {
     throw std::invalid_argument("the start of a minimisation must be finite numbers, got " +
                                 (start.size() == 0 ? std::string("none") : "others"));

@@ -89,7 +89,7 @@ struct Content {
   float scale = 0.0F;
   std::vector<float> mean, basis;
   std::vector<double> variance, theta;
-  Grey goal;
+  Image goal;
 
   /// Passes all values to a Writer or a Reader, in the order of the file.
   template <class Archive>

@@ -86,7 +86,7 @@ Blur::Blur(int image_size, double std) {
   G_ = G.cast<float>();  // converted last, so that the weights equal those that NumPy computes
 }
 
-Eigen::MatrixXf Pca::project(const Eigen::Ref<const GreyMatrix>& pixels) const {
+Eigen::MatrixXf Pca::project(const Eigen::Ref<const ImageMatrix>& pixels) const {
   Eigen::MatrixXf images = pixels.cast<float>() / kWhite;
   blur.apply(&images);
   return scale * (basis.transpose() * (images.colwise() - mean));
@@ -112,9 +112,9 @@ Projection::Projection(const Pca& pca) {
   filters_ = static_cast<double>(pca.scale) / kWhite * filters.transpose();
 }
 
-Eigen::VectorXd Projection::operator()(const Grey& grey) const {
+Eigen::VectorXd Projection::operator()(const Image& image) const {
   const Eigen::Map<const Eigen::Matrix<std::uint8_t, Eigen::Dynamic, 1>> pixels(
-      grey.data(), static_cast<Eigen::Index>(grey.size()));
+      image.data(), static_cast<Eigen::Index>(image.size()));
   return filters_ * pixels.cast<double>() - offset_;
 }
 

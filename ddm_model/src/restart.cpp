@@ -17,15 +17,15 @@ constexpr Eigen::Index kMinPieces = 4;    // for few samples, so that they come 
 constexpr int kWarmUpIterations = 50;     // with k = 1, if k > 1
 
 /// Minimises one stage from the current weights of a restart.
-Minimum minimiseFrom(const Stage& stage, const TrainingOptions& training, Problem* problem,
-                     Progress* progress, Restart* restart) {
-  Minimum minimum = minimiseStage(stage, training, problem->networks, &problem->objective,
-                                  &restart->theta, progress->nextStage());
-  progress->endStage(stage.max_iterations - minimum.iterations);
-  restart->message = minimum.message;
-  restart->iterations += minimum.iterations;
-  restart->evaluations += minimum.evaluations;
-  return minimum;
+SolverResult minimiseFrom(const Stage& stage, const TrainingOptions& training, Problem* problem,
+                          Progress* progress, Restart* restart) {
+  SolverResult result = minimiseStage(stage, training, problem->networks, &problem->objective,
+                                      &restart->theta, progress->nextStage());
+  progress->endStage(stage.max_iterations - result.iterations);
+  restart->message = result.message;
+  restart->iterations += result.iterations;
+  restart->evaluations += result.evaluations;
+  return result;
 }
 
 /// @return stage with one prediction step that precedes a stage with several, because rollouts of an
@@ -41,11 +41,11 @@ Stage warmUpOf(Stage stage) {
 void minimiseRestart(const RestartProblem& problem, Progress* progress, Restart* restart) {
   const std::vector<Stage>& stages = problem.schedule.stages;
   const Terms terms = problem.schedule.terms();
-  const auto lowered = [&](size_t stage, const Minimum& minimum) {
-    if (minimum.improved()) return true;
+  const auto lowered = [&](size_t stage, const SolverResult& result) {
+    if (result.improved()) return true;
     std::ostringstream text;
     text << "training did not lower the objective: stage " << stage + 1 << " of " << stages.size()
-         << " stays at " << minimum.initial_cost << " (" << minimum.message
+         << " stays at " << result.initial_cost << " (" << result.message
          << "); check the bags, or leave the block training at its defaults";
     restart->message = text.str();
     return false;
@@ -65,9 +65,9 @@ void minimiseRestart(const RestartProblem& problem, Progress* progress, Restart*
     if (part == 0 && warm_up.max_iterations > 0) {
       minimiseFrom(warm_up, problem.training, networks.get(), progress, restart);
     }
-    const Minimum minimum =
+    const SolverResult result =
         minimiseFrom(stages.back(), problem.training, networks.get(), progress, restart);
-    if (part == 0 && !lowered(stages.size() - 1, minimum)) return;
+    if (part == 0 && !lowered(stages.size() - 1, result)) return;
     restart->error = networks->cost(restart->theta, terms);
   }
   if (!std::isfinite(restart->error)) {  // a rollout diverges
@@ -80,7 +80,8 @@ void minimiseRestart(const RestartProblem& problem, Progress* progress, Restart*
 StageCallback Progress::nextStage() {
   if (cancelled_) throw Cancelled();
   int before = 0;  // iterations of this stage at the last call
-  return [this, before](const Minimum& so_far, const JointObjective<float>::Value& value) mutable {
+  return [this, before](const SolverResult& so_far,
+                        const JointObjective<float>::Value& value) mutable {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (cancelled_) return false;
     iterations_ += so_far.iterations - before;

@@ -148,9 +148,9 @@ Eigen::VectorXf Preconditioner::operator()(const Eigen::VectorXf& v) const {
   return out;
 }
 
-Minimum minimiseStage(const Stage& stage, const TrainingOptions& training,
-                      const Networks<float>& networks, JointObjective<float>* objective,
-                      Eigen::VectorXd* theta, const StageCallback& callback) {
+SolverResult minimiseStage(const Stage& stage, const TrainingOptions& training,
+                           const Networks<float>& networks, JointObjective<float>* objective,
+                           Eigen::VectorXd* theta, const StageCallback& callback) {
   const Range free = freeParameters(networks, stage.free);
   StageObjective function(objective, stage.terms, free, *theta);
   const bool kfac = training.solver == "kfac";
@@ -160,9 +160,9 @@ Minimum minimiseStage(const Stage& stage, const TrainingOptions& training,
   options.lbfgs_rank = training.solver == "bfgs" ? 0 : kfac ? kKfacRank : kLbfgsRank;
   options.function_tolerance = training.function_tolerance;
   options.gradient_tolerance = 1e-9;
-  Minimum total;
+  SolverResult total;
   if (callback) {
-    options.on_iteration = [&](Minimum so_far) {
+    options.on_iteration = [&](SolverResult so_far) {
       so_far.iterations += total.iterations;
       return callback(so_far, function.best());
     };
@@ -174,20 +174,20 @@ Minimum minimiseStage(const Stage& stage, const TrainingOptions& training,
       x.setZero();
     }
     options.max_iterations = kfac ? std::min(kRefresh, cap - total.iterations) : cap;
-    Minimum minimum = minimise(std::ref(function), x, options);
-    const bool found = std::isfinite(minimum.cost);
+    SolverResult result = minimise(std::ref(function), x, options);
+    const bool found = std::isfinite(result.cost);
     if (found) {
-      x = minimum.x;
+      x = result.x;
       theta->segment(free.begin, free.size) = function.parametersAt(x).cast<double>();
     }
     if (total.evaluations > 0) {
-      minimum.initial_cost = total.initial_cost;
-      if (!found) minimum.cost = total.cost;  // the result before this round stays
+      result.initial_cost = total.initial_cost;
+      if (!found) result.cost = total.cost;  // the result before this round stays
     }
-    minimum.iterations += total.iterations;
-    minimum.evaluations += total.evaluations;
-    total = std::move(minimum);
-  } while (total.reason == MinimumReason::kIterationLimit && total.iterations < cap);
+    result.iterations += total.iterations;
+    result.evaluations += total.evaluations;
+    total = std::move(result);
+  } while (total.reason == TerminationReason::kIterationLimit && total.iterations < cap);
   return total;
 }
 

@@ -40,15 +40,15 @@ class Preconditioner {
 /// Receives the best point so far with its V_R and V_P, after each iteration. Returning false ends
 /// the stage.
 using StageCallback =
-    std::function<bool(const Minimum& so_far, const JointObjective<float>::Value& value)>;
+    std::function<bool(const SolverResult& so_far, const JointObjective<float>::Value& value)>;
 
 /// Minimises w times the terms of a stage over its free parameters.
 /// @param theta     in: all parameters; out: the free parameters are at the minimum, or unchanged
 ///                  if the objective is not finite at the initial point             [P]
 /// @param callback  may be empty
 /// @return          result of the solver, in its own coordinates
-Minimum minimiseStage(const Stage& stage, const TrainingOptions& training,
-                      const Networks<float>& networks, JointObjective<float>* objective,
-                      Eigen::VectorXd* theta, const StageCallback& callback);
+SolverResult minimiseStage(const Stage& stage, const TrainingOptions& training,
+                           const Networks<float>& networks, JointObjective<float>* objective,
+                           Eigen::VectorXd* theta, const StageCallback& callback);
 
 }  // namespace ddm

@@ -90,7 +90,7 @@ TEST_F(BagCacheTest, TellsTheNotesOfEachBagOnce) {
   BagCache cache(testing::kToySize, BagOptions(),
                  [&notes](const std::string& note) { notes.push_back(note); });
   DataSet dark(testing::kToySize, 1);
-  for (int t = 0; t < 5; ++t) dark.append(Grey(64, 3), Eigen::VectorXd::Zero(1), t == 0);
+  for (int t = 0; t < 5; ++t) dark.append(Image(64, 3), Eigen::VectorXd::Zero(1), t == 0);
   const std::string path = write("dark.bag", dark);
   cache.read({path});
   cache.read({path});

@@ -129,20 +129,20 @@ TEST_F(BagReader, ConvertsImagesOfAnotherSizeAndEncoding) {
     ToyBag bag(path_);
     for (int t = 0; t < 5; ++t) {
       const double stamp = 1.0 + 0.2 * t;
-      sensor_msgs::Image image = imageMessage(stamp, Grey(24 * 24, 100), 24);
+      sensor_msgs::Image image = imageMessage(stamp, Image(24 * 24, 100), 24);
       image.encoding = "rgb8";
       image.step = 3 * 24;
       image.data.assign(3 * 24 * 24, 100);
       bag.image(stamp, image);
       bag.torque(stamp, {1.0});
     }
-    bag.goal(9.0, imageMessage(9.0, Grey(16 * 16, 40), 16));
+    bag.goal(9.0, imageMessage(9.0, Image(16 * 16, 40), 16));
   }
   const BagContent content = read();
   EXPECT_EQ(content.camera, "24x24 rgb8");
   EXPECT_EQ(content.data.numPixels(), 64);
   EXPECT_EQ(content.data.image(2)[17], 100);
-  EXPECT_EQ(content.data.goal(), Grey(64, 40));
+  EXPECT_EQ(content.data.goal(), Image(64, 40));
 }
 
 TEST_F(BagReader, TakesTheLastGoalImageAndDoesWithoutOne) {

@@ -20,7 +20,7 @@ Eigen::VectorXd torque(double value) { return Eigen::VectorXd::Constant(1, value
 DataSet numbered(int first, int count) {
   DataSet data(2, 1);
   for (int i = first; i < first + count; ++i) {
-    data.append(Grey(4, static_cast<std::uint8_t>(i)), torque(i), i == first);
+    data.append(Image(4, static_cast<std::uint8_t>(i)), torque(i), i == first);
   }
   return data;
 }
@@ -31,7 +31,7 @@ TEST(DataSet, GivesImagesSideBySideTheGoalLast) {
   data.setGoal({9, 8, 7, 6});
   ASSERT_EQ(data.numImages(), 4);
   EXPECT_EQ(data.image(3), data.goal());
-  const GreyMatrix pixels = data.pixels(2, 2);
+  const ImageMatrix pixels = data.pixels(2, 2);
   ASSERT_EQ(pixels.cols(), 2);
   for (Eigen::Index k = 0; k < 4; ++k) {
     EXPECT_EQ(pixels(k, 0), data.image(2)[static_cast<size_t>(k)]);
@@ -52,30 +52,30 @@ TEST(DataSet, KeepsASeamBetweenTwoTrials) {
 
 TEST(DataSet, TheLastGoalThatIsAppendedCounts) {
   DataSet with_goal = numbered(0, 1);
-  with_goal.setGoal(Grey(4, 9));
+  with_goal.setGoal(Image(4, 9));
   DataSet data = numbered(0, 1);
   EXPECT_FALSE(data.hasGoal());
   data.append(with_goal);
-  EXPECT_EQ(data.goal(), Grey(4, 9));
+  EXPECT_EQ(data.goal(), Image(4, 9));
   DataSet other = numbered(0, 1);
-  other.setGoal(Grey(4, 7));
+  other.setGoal(Image(4, 7));
   data.append(other);
-  EXPECT_EQ(data.goal(), Grey(4, 7));
+  EXPECT_EQ(data.goal(), Image(4, 7));
   data.append(numbered(0, 1));
-  EXPECT_EQ(data.goal(), Grey(4, 7));
+  EXPECT_EQ(data.goal(), Image(4, 7));
 }
 
 TEST(DataSet, RefusesFramesAndDataSetsThatDoNotFit) {
   DataSet data(2, 1);
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>([&] { data.append(Grey(5), torque(0), true); },
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>([&] { data.append(Image(5), torque(0), true); },
                                                   {"4 pixels", "got 5"}));
   EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-      [&] { data.append(Grey(4), Eigen::Vector2d(0, 0), true); }, {"1 value", "got 2"}));
+      [&] { data.append(Image(4), Eigen::Vector2d(0, 0), true); }, {"1 value", "got 2"}));
   EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-      [&] { data.append(Grey(4), torque(std::numeric_limits<double>::quiet_NaN()), true); },
+      [&] { data.append(Image(4), torque(std::numeric_limits<double>::quiet_NaN()), true); },
       {"finite"}));
   EXPECT_TRUE(
-      throwsNaming<std::invalid_argument>([&] { data.setGoal(Grey(3)); }, {"4 pixels", "got 3"}));
+      throwsNaming<std::invalid_argument>([&] { data.setGoal(Image(3)); }, {"4 pixels", "got 3"}));
   EXPECT_EQ(data.numFrames(), 0);  // nothing of a refused frame is kept
   EXPECT_TRUE(data.segments().empty());
   EXPECT_THROW(data.append(DataSet(3, 1)), std::invalid_argument);

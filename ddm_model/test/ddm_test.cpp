@@ -25,14 +25,14 @@ struct Parts {
   int torque_dim = 1;
   Pca pca = toyModel().pca();
   Eigen::VectorXd theta = toyModel().theta();
-  Grey goal = toyImage(1.0);
+  Image goal = toyImage(1.0);
 
   Ddm model() const { return Ddm(options, image_size, torque_dim, pca, theta, goal, ModelInfo()); }
 };
 
 TEST(Ddm, EncodesThroughPcaAndEncoder) {
   const Ddm model = toyModel();
-  const Grey image = toyImage(0.5);
+  const Image image = toyImage(0.5);
   const Networks<double> nets(model.options(), 1);
   Mlp<double>::Tape tape;
   nets.encoder().forward(model.theta().data(), Projection(model.pca())(image), &tape);
@@ -51,7 +51,7 @@ TEST(Ddm, DecodesThroughDecoderAndPcaToTheNearestGreyValue) {
   Mlp<double>::Tape tape;
   nets.decoder().forward(nets.decoderOf(model.theta().data()), z, &tape);
   const Eigen::MatrixXf image = model.pca().reconstruct(tape.output().cast<float>());
-  const Grey grey = model.decode(z);
+  const Image grey = model.decode(z);
   for (int i = 0; i < 64; ++i) EXPECT_NEAR(grey[i], 255.0F * image(i, 0), 0.501F);
 }
 
@@ -59,7 +59,7 @@ TEST(Ddm, RefusesAGoalFeatureWithoutAGoalAndAnImageOfAnotherSize) {
   const Ddm model = toyModel(/*with_goal=*/false);
   EXPECT_FALSE(model.hasGoal());
   EXPECT_TRUE(throwsNaming<std::logic_error>([&] { model.goalFeature(); }, {"goal image"}));
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>([] { toyModel().encode(Grey(63)); },
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>([] { toyModel().encode(Image(63)); },
                                                   {"64 pixels", "got 63"}));
 }
 

@@ -95,6 +95,6 @@ def test_all_arrays_are_exported_with_the_goal_and_its_feature(made, tmp_path):
     code, output = toy_robot.call("export", "--model", made.model, "--out", out)
     assert code == 0, output
     arrays, model = dict(np.load(out)), ddm_model.load(made.model)
-    np.testing.assert_array_equal(arrays["goal"], toy_robot.picture(3.0).reshape(-1))
+    np.testing.assert_array_equal(arrays["goal"], toy_robot.image(3.0).reshape(-1))
     np.testing.assert_array_equal(arrays["goal_feature"], model.goal_feature)
     assert set(arrays) == set(model.arrays)

@@ -189,7 +189,7 @@ TEST(Transitions, StayWithinSegments) {
   const PredictionModel<double> f(options, 1);
   DataSet data(2, 1);
   for (int t = 0; t < 7; ++t) {
-    data.append(Grey(4), Eigen::VectorXd::Constant(1, t), /*new_segment=*/t == 0 || t == 3);
+    data.append(Image(4), Eigen::VectorXd::Constant(1, t), /*new_segment=*/t == 0 || t == 3);
   }
   Eigen::MatrixXd Z(2, 7);
   Z.row(0) << 0, 1, 4, 100, 101, 104, 109;

@@ -73,7 +73,7 @@ TEST(SupportStates, AreStatesOfOneMotionEach) {
   DataSet data(2, 1);
   Eigen::MatrixXf Z(1, 7);
   for (int t = 0; t < 7; ++t) {
-    data.append(Grey(4, 0), Eigen::VectorXd::Constant(1, 10.0 * t), /*new_segment=*/t == 4);
+    data.append(Image(4, 0), Eigen::VectorXd::Constant(1, 10.0 * t), /*new_segment=*/t == 4);
     Z(0, t) = static_cast<float>(t);
   }
   const Eigen::MatrixXf support_states = supportStates(Z, data, /*order=*/3, /*max_count=*/100);

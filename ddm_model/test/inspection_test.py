@@ -42,7 +42,7 @@ class Page(html.parser.HTMLParser):
     def handle_data(self, data):
         self.text += data
 
-    def picture(self, title):
+    def image(self, title):
         data = self.images[title].split("data:image/png;base64,")[1]
         return matplotlib.image.imread(io.BytesIO(base64.b64decode(data)), format="png")
 
@@ -93,7 +93,7 @@ def test_a_good_model_passes_on_a_bag_that_it_has_not_seen_and_the_numbers_are_t
     page = Page(made.report)
     assert "14 checks passed" in page.text and "what to do" not in page.text
     assert list(page.images) == WITH_BAGS
-    assert all(np.ptp(page.picture(title)[..., :3]) > 0.5 for title in WITH_BAGS)
+    assert all(np.ptp(page.image(title)[..., :3]) > 0.5 for title in WITH_BAGS)
     errors, frames, spectrum = (pandas.read_csv(os.path.join(made.report, name))
                                 for name in ("prediction_errors.csv", "features.csv", "spectrum.csv"))
     assert list(errors.steps) == [1, 2, 3, 4, 5, 6] and errors.num_predictions[0] == 200 - 1 - 6

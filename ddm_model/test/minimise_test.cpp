@@ -31,24 +31,24 @@ TEST(Minimise, FindsTheMinimumWithFullAndWithLimitedMemory) {
   for (const int rank : {0, 1, 20}) {
     MinimiseOptions options;
     options.lbfgs_rank = rank;
-    const Minimum minimum = minimise(valley, vectorOf({-1.2, 1.0}), options);
-    EXPECT_TRUE(minimum.improved() && minimum.converged());
-    EXPECT_NEAR(24.2, minimum.initial_cost, 1e-10);
-    EXPECT_LT((minimum.x - vectorOf({1.0, 1.0})).norm(), 1e-5);
-    EXPECT_EQ(valley(minimum.x, nullptr), minimum.cost);
-    EXPECT_LT(minimum.gradient.norm(), 1e-4);
-    EXPECT_GE(minimum.evaluations, minimum.iterations);
+    const SolverResult result = minimise(valley, vectorOf({-1.2, 1.0}), options);
+    EXPECT_TRUE(result.improved() && result.converged());
+    EXPECT_NEAR(24.2, result.initial_cost, 1e-10);
+    EXPECT_LT((result.x - vectorOf({1.0, 1.0})).norm(), 1e-5);
+    EXPECT_EQ(valley(result.x, nullptr), result.cost);
+    EXPECT_LT(result.gradient.norm(), 1e-4);
+    EXPECT_GE(result.evaluations, result.iterations);
   }
 }
 
 TEST(Minimise, KeepsItsLimitsAndReturnsTheBestSoFar) {
   MinimiseOptions options;
   options.max_iterations = 4;
-  const Minimum few = minimise(valley, vectorOf({-1.2, 1.0}), options);
+  const SolverResult few = minimise(valley, vectorOf({-1.2, 1.0}), options);
   EXPECT_EQ(4, few.iterations);
   EXPECT_TRUE(few.improved());
   EXPECT_FALSE(few.converged());
-  EXPECT_EQ(MinimumReason::kIterationLimit, few.reason);
+  EXPECT_EQ(TerminationReason::kIterationLimit, few.reason);
   EXPECT_NE(std::string::npos, few.message.find("iterations")) << few.message;
 
   int calls = 0;
@@ -58,12 +58,12 @@ TEST(Minimise, KeepsItsLimitsAndReturnsTheBestSoFar) {
   };
   options.max_iterations = 100;
   options.max_evaluations = 9;
-  const Minimum capped = minimise(counting, vectorOf({-1.2, 1.0}), options);
+  const SolverResult capped = minimise(counting, vectorOf({-1.2, 1.0}), options);
   EXPECT_EQ(9, calls);
   EXPECT_EQ(9, capped.evaluations);
   EXPECT_TRUE(capped.improved());
   EXPECT_FALSE(capped.converged());
-  EXPECT_EQ(MinimumReason::kEvaluationLimit, capped.reason);
+  EXPECT_EQ(TerminationReason::kEvaluationLimit, capped.reason);
   EXPECT_NE(std::string::npos, capped.message.find("evaluations")) << capped.message;
   EXPECT_EQ(valley(capped.x, nullptr), capped.cost);
 }
@@ -80,28 +80,28 @@ TEST(Minimise, SurvivesPointsThatCannotBeEvaluated) {
       return bad_gradient ? -1.0 : kNaN;
     };
     const Eigen::VectorXd start = Eigen::VectorXd::Constant(1, 5.0);
-    const Minimum minimum = minimise(walled, start, MinimiseOptions());
-    EXPECT_TRUE(minimum.improved());
-    EXPECT_NEAR(0.01, minimum.x[0], 1e-5) << minimum.message;
+    const SolverResult result = minimise(walled, start, MinimiseOptions());
+    EXPECT_TRUE(result.improved());
+    EXPECT_NEAR(0.01, result.x[0], 1e-5) << result.message;
     EXPECT_GT(failures, 0) << "the wall was never met: the test shows nothing";
   }
 }
 
 TEST(Minimise, SaysThatTheStartCannotBeEvaluated) {
   const auto nowhere = [](const Eigen::VectorXd&, Eigen::VectorXd*) { return kNaN; };
-  const Minimum minimum = minimise(nowhere, vectorOf({3.0, 4.0}), MinimiseOptions());
-  EXPECT_EQ(MinimumReason::kStartFailed, minimum.reason);
-  EXPECT_FALSE(minimum.improved() || minimum.converged());
-  EXPECT_EQ(kInfinity, minimum.cost);
-  EXPECT_EQ(vectorOf({3.0, 4.0}), minimum.x);
-  EXPECT_NE(std::string::npos, minimum.message.find("evaluated")) << minimum.message;
+  const SolverResult result = minimise(nowhere, vectorOf({3.0, 4.0}), MinimiseOptions());
+  EXPECT_EQ(TerminationReason::kStartFailed, result.reason);
+  EXPECT_FALSE(result.improved() || result.converged());
+  EXPECT_EQ(kInfinity, result.cost);
+  EXPECT_EQ(vectorOf({3.0, 4.0}), result.x);
+  EXPECT_NE(std::string::npos, result.message.find("evaluated")) << result.message;
 }
 
 TEST(Minimise, ClaimsNoImprovementAtTheMinimum) {
-  const Minimum minimum = minimise(valley, vectorOf({1.0, 1.0}), MinimiseOptions());
-  EXPECT_FALSE(minimum.improved());
-  EXPECT_TRUE(minimum.converged());
-  EXPECT_EQ(minimum.initial_cost, minimum.cost);
+  const SolverResult result = minimise(valley, vectorOf({1.0, 1.0}), MinimiseOptions());
+  EXPECT_FALSE(result.improved());
+  EXPECT_TRUE(result.converged());
+  EXPECT_EQ(result.initial_cost, result.cost);
 }
 
 TEST(Minimise, DoesNotCallItConvergedWhereNoStepHelpsThoughThereIsASlope) {
@@ -112,11 +112,11 @@ TEST(Minimise, DoesNotCallItConvergedWhereNoStepHelpsThoughThereIsASlope) {
   MinimiseOptions options;
   for (options.function_tolerance = 1e-10; options.function_tolerance < 1.0;
        options.function_tolerance *= 1e10) {
-    const Minimum minimum = minimise(stuck, vectorOf({0.0}), options);
-    EXPECT_FALSE(minimum.improved());
-    EXPECT_FALSE(minimum.converged());
-    EXPECT_EQ(MinimumReason::kNoDecrease, minimum.reason);
-    EXPECT_NE(std::string::npos, minimum.message.find("magnitude 3")) << minimum.message;
+    const SolverResult result = minimise(stuck, vectorOf({0.0}), options);
+    EXPECT_FALSE(result.improved());
+    EXPECT_FALSE(result.converged());
+    EXPECT_EQ(TerminationReason::kNoDecrease, result.reason);
+    EXPECT_NE(std::string::npos, result.message.find("magnitude 3")) << result.message;
   }
 }
 
@@ -132,12 +132,12 @@ TEST(Minimise, EndsByTheChangeOfTheCostWhateverItsSign) {
     MinimiseOptions options;
     options.gradient_tolerance = 0.0;
     options.function_tolerance = 1e-4;
-    const Minimum loose = minimise(quartic, start, options);
+    const SolverResult loose = minimise(quartic, start, options);
     options.function_tolerance = 1e-10;
-    const Minimum tight = minimise(quartic, start, options);
-    for (const Minimum* minimum : {&loose, &tight}) {
-      EXPECT_TRUE(minimum->improved() && minimum->converged()) << minimum->message;
-      EXPECT_LT(minimum->iterations, 60);
+    const SolverResult tight = minimise(quartic, start, options);
+    for (const SolverResult* result : {&loose, &tight}) {
+      EXPECT_TRUE(result->improved() && result->converged()) << result->message;
+      EXPECT_LT(result->iterations, 60);
     }
     EXPECT_LT(loose.iterations, tight.iterations) << "offset " << offset;
     EXPECT_NEAR(offset, loose.cost, 1e-3);
@@ -146,7 +146,7 @@ TEST(Minimise, EndsByTheChangeOfTheCostWhateverItsSign) {
 }
 
 TEST(Minimise, AsksForPermissionBeforeEachEvaluationAndNeverAgainOnceItIsRefused) {
-  const Minimum whole = minimise(valley, vectorOf({-1.2, 1.0}), MinimiseOptions());
+  const SolverResult whole = minimise(valley, vectorOf({-1.2, 1.0}), MinimiseOptions());
   double best = kInfinity;
   for (int allowed = 0; allowed < whole.evaluations; ++allowed) {
     int evaluations = 0, asked = 0;
@@ -157,16 +157,16 @@ TEST(Minimise, AsksForPermissionBeforeEachEvaluationAndNeverAgainOnceItIsRefused
     };
     MinimiseOptions options;
     options.stop = [&] { return ++asked > allowed; };
-    const Minimum minimum = minimise(counting, vectorOf({-1.2, 1.0}), options);
+    const SolverResult result = minimise(counting, vectorOf({-1.2, 1.0}), options);
     EXPECT_EQ(allowed, evaluations);
     EXPECT_EQ(allowed + 1, asked);
-    EXPECT_EQ(allowed, minimum.evaluations);
-    EXPECT_EQ(MinimumReason::kStopped, minimum.reason) << minimum.message;
-    EXPECT_LE(minimum.cost, best);
-    best = minimum.cost;
-    EXPECT_EQ(allowed > 0 ? valley(minimum.x, nullptr) : kInfinity, minimum.cost);
+    EXPECT_EQ(allowed, result.evaluations);
+    EXPECT_EQ(TerminationReason::kStopped, result.reason) << result.message;
+    EXPECT_LE(result.cost, best);
+    best = result.cost;
+    EXPECT_EQ(allowed > 0 ? valley(result.x, nullptr) : kInfinity, result.cost);
     if (allowed == 0) {
-      EXPECT_EQ(vectorOf({-1.2, 1.0}), minimum.x);
+      EXPECT_EQ(vectorOf({-1.2, 1.0}), result.x);
     }
   }
 }

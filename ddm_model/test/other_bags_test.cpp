@@ -395,9 +395,9 @@ TEST_F(OtherBags, OtherClocksAreRefusedWithBothSpans) {
 TEST_F(OtherBags, CompressedImagesAreUnpacked) {
   const auto compressed = [this](double stamp, const char* suffix,
                                  const sensor_msgs::Image& image) {
-    const std::string picture = folder_.file(std::string("picture") + suffix);
-    writePicture(picture, image);
-    const std::string bytes = readFile(picture);
+    const std::string file = folder_.file(std::string("file") + suffix);
+    writeImageFile(file, image);
+    const std::string bytes = readFile(file);
     sensor_msgs::CompressedImage message;
     message.header.stamp = ros::Time(stamp);
     message.format = stamp < kBegin + 0.5 ? suffix + 1 : "";  // drivers change what they call it
@@ -415,7 +415,7 @@ TEST_F(OtherBags, CompressedImagesAreUnpacked) {
     const BagContent content = read();
     EXPECT_EQ(content.camera, "8x8 " + std::string(suffix + 1));
     ASSERT_EQ(content.data.numFrames(), kFrames);
-    const Grey truth = toyImage(angleOf(5)), grey = content.data.image(5);
+    const Image truth = toyImage(angleOf(5)), grey = content.data.image(5);
     for (size_t i = 0; i < truth.size(); ++i) {
       EXPECT_NEAR(grey[i], truth[i], suffix == std::string(".png") ? 0 : 25) << suffix;
     }
@@ -423,9 +423,9 @@ TEST_F(OtherBags, CompressedImagesAreUnpacked) {
 }
 
 TEST_F(OtherBags, ABrokenJpegLeavesAGapThatIsTold) {
-  const std::string picture = folder_.file("picture.jpg");
-  writePicture(picture, imageMessage(0.0, toyImage(1.0, 64), 64));
-  const std::string bytes = readFile(picture);
+  const std::string file = folder_.file("file.jpg");
+  writeImageFile(file, imageMessage(0.0, toyImage(1.0, 64), 64));
+  const std::string bytes = readFile(file);
   for (const double part : {0.05, 0.7}) {  // of the header alone, and of the pixels
     open();
     for (int k = 0; k < kFrames; ++k) {
@@ -472,7 +472,7 @@ TEST_F(OtherBags, TransportsOfAnImageTopicAreFoundByItsNameOrNamed) {
 
 TEST_F(OtherBags, ThePartOfTheImageIsTakenThatCounts) {
   for (int i = 0; i < 3; ++i) {
-    sensor_msgs::Image image = imageMessage(kBegin + kDt * i, Grey(40 * 40, 10), 40);
+    sensor_msgs::Image image = imageMessage(kBegin + kDt * i, Image(40 * 40, 10), 40);
     for (int row = 20; row < 28; ++row) {
       for (int col = 4; col < 12; ++col) image.data[40 * row + col] = 200;
     }
@@ -480,9 +480,9 @@ TEST_F(OtherBags, ThePartOfTheImageIsTakenThatCounts) {
   }
   writeFloats();
   close();
-  EXPECT_NE(read().data.image(0), Grey(kToySize * kToySize, 200));
+  EXPECT_NE(read().data.image(0), Image(kToySize * kToySize, 200));
   options_.crop = {4, 20, 8, 8};
-  EXPECT_EQ(read().data.image(0), Grey(kToySize * kToySize, 200));
+  EXPECT_EQ(read().data.image(0), Image(kToySize * kToySize, 200));
   options_.crop = {4, 20, 8, 80};
   EXPECT_TRUE(isRefused({"crop of 8 x 80", "40 x 40"}));
 }

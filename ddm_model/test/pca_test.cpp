@@ -25,7 +25,7 @@ DataSet noise(int num_frames, int size, unsigned seed) {
   std::uniform_int_distribution<int> grey(0, 255);
   DataSet data(size, 1);
   for (int t = 0; t < num_frames; ++t) {
-    Grey image(static_cast<size_t>(size) * size);
+    Image image(static_cast<size_t>(size) * size);
     for (std::uint8_t& k : image) k = static_cast<std::uint8_t>(grey(rng));
     data.append(image, Eigen::VectorXd::Zero(1), false);
   }
@@ -38,8 +38,8 @@ DataSet twoBlobs(int num_frames, int size, unsigned seed) {
   std::uniform_real_distribution<double> angle(-3.14, 3.14);
   DataSet data(size, 1);
   for (int t = 0; t < num_frames; ++t) {
-    Grey image = testing::toyImage(angle(rng), size);
-    const Grey other = testing::toyImage(angle(rng), size);
+    Image image = testing::toyImage(angle(rng), size);
+    const Image other = testing::toyImage(angle(rng), size);
     for (size_t i = 0; i < image.size(); ++i) image[i] = std::max(image[i], other[i]);
     data.append(image, Eigen::VectorXd::Zero(1), false);
   }
@@ -164,7 +164,7 @@ TEST(Pca, RefusesTooFewImagesTooFewPixelsAndImagesThatAreAllTheSame) {
                       {"model/pca_dim = 6", "at least 7 images", "got 6", "lower model/pca_dim"}));
   EXPECT_TRUE(refuses(noise(30, 4, 1), 17, {"model/pca_dim = 17", "16 pixels"}));
   DataSet same(4, 1);
-  for (int t = 0; t < 10; ++t) same.append(Grey(16, 77), Eigen::VectorXd::Zero(1), false);
+  for (int t = 0; t < 10; ++t) same.append(Image(16, 77), Eigen::VectorXd::Zero(1), false);
   EXPECT_TRUE(refuses(same, 3, {"10 images", "same"}));
 }
 

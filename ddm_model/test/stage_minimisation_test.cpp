@@ -121,7 +121,7 @@ class StageMinimisation : public ::testing::Test {
     shapes_.decoder().weights(shapes_.decoderOf(theta_.data()), 1).setConstant(weight);
   }
 
-  Minimum run(const std::string& solver) {
+  SolverResult run(const std::string& solver) {
     TrainingOptions training;
     training.solver = solver;
     return minimiseStage(stage_, training, networks_, &objective_, &theta_, nullptr);
@@ -143,8 +143,8 @@ TEST_F(StageMinimisation, KeepsParametersFiniteWhereAKroneckerFactorOverflows) {
   std::mt19937_64 rng(1);
   const LayerFactors<float> factors = objective_.factors(theta_.cast<float>(), stage_.terms, &rng);
   ASSERT_FALSE(factors[2].errors.allFinite()) << "the test shows nothing";
-  const Minimum minimum = run("kfac");
-  EXPECT_TRUE(std::isfinite(minimum.cost)) << minimum.message;
+  const SolverResult result = run("kfac");
+  EXPECT_TRUE(std::isfinite(result.cost)) << result.message;
   EXPECT_TRUE(theta_.allFinite());
 }
 
@@ -152,7 +152,7 @@ TEST_F(StageMinimisation, LeavesParametersAsTheyAreWhereTheObjectiveCannotBeEval
   setLastWeights(1e30);
   const Eigen::VectorXd before = theta_;
   for (const char* solver : {"lbfgs", "kfac", "bfgs"}) {
-    EXPECT_EQ(run(solver).reason, MinimumReason::kStartFailed) << solver;
+    EXPECT_EQ(run(solver).reason, TerminationReason::kStartFailed) << solver;
     EXPECT_EQ(theta_, before) << solver;
   }
 }

@@ -20,7 +20,7 @@
 namespace ddm {
 namespace testing {
 
-inline sensor_msgs::Image imageMessage(double stamp, const Grey& grey, int size = kToySize) {
+inline sensor_msgs::Image imageMessage(double stamp, const Image& grey, int size = kToySize) {
   return encodeImage(grey, size, ros::Time(stamp), "camera");
 }
 

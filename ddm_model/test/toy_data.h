@@ -18,13 +18,13 @@ constexpr int kToySize = 8;  // pixels
 
 /// A blob on a circle around the image centre.
 /// @param angle  [rad]
-inline Grey toyImage(double angle, int size = kToySize) {
+inline Image toyImage(double angle, int size = kToySize) {
   const double centre = (size - 1) / 2.0;
   const double radius = 0.3 * size;
   const double x = centre + radius * std::sin(angle);
   const double y = centre + radius * std::cos(angle);
   const double width = 0.2 * size;
-  Grey grey;
+  Image grey;
   for (int row = 0; row < size; ++row) {
     for (int col = 0; col < size; ++col) {
       const double distance = std::hypot(col - x, row - y) / width;
@@ -75,7 +75,7 @@ inline Ddm toyModel(bool with_goal = true) {
   info.config = "model:\n  pca_dim: 6\n";
   const Eigen::Index num_params = Networks<double>(options, 1).numParams();
   return Ddm(options, kToySize, 1, pca, randomMatrix(num_params, 1, 4),
-             with_goal ? toyImage(3.0) : Grey(), info);
+             with_goal ? toyImage(3.0) : Image(), info);
 }
 
 }  // namespace testing

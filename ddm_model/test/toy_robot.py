@@ -28,7 +28,7 @@ def call(name, *arguments):
     return done.returncode, done.stdout
 
 
-def picture(angle, size=SIZE):
+def image(angle, size=SIZE):
     """Grey values of a blob on a circle, an array [size x size]."""
     rows, columns = np.mgrid[0:size, 0:size] / (size - 1.0) - 0.5
     square = (columns - 0.3 * np.sin(angle)) ** 2 + (rows - 0.3 * np.cos(angle)) ** 2
@@ -47,14 +47,14 @@ def write_bag(path, num_frames=150, seed=1, size=SIZE, channels=1, image_topic="
     random = np.random.RandomState(seed)
     angle, images, torques = 0.5 * seed, [], []
     with rosbag.Bag(path, "w") as bag:
-        bag.write("goal_image", image_message(rospy.Time(10), picture(3.0, size), channels), rospy.Time(10))
+        bag.write("goal_image", image_message(rospy.Time(10), image(3.0, size), channels), rospy.Time(10))
         for k in range(num_frames):
             u = float(random.uniform(-2.0, 2.0))
             u = u if torque is None else torque(u)
             stamp = rospy.Time.from_sec(10.0 + 0.2 * k)
             message = Torque(torque=[u])
             message.header.stamp = stamp
-            images.append(picture(angle, size))
+            images.append(image(angle, size))
             torques.append(u)
             bag.write(image_topic, image_message(stamp, images[-1], channels), stamp)
             bag.write("torque", message, stamp)

@@ -69,7 +69,8 @@ void run(const Arguments& arguments) {
   const auto warn = [](const std::string& note) { std::cerr << "warning: " << note << "\n"; };
   ddm::DataSet data = ddm::BagCache(config.image.size, config.data_set, warn).read(arguments.bags);
   if (!arguments.goal.empty()) {
-    data.setGoal(ddm::greyOf(ddm::readPicture(arguments.goal), config.image.size, config.data_set));
+    data.setGoal(
+        ddm::greyOf(ddm::readImageFile(arguments.goal), config.image.size, config.data_set));
   }
   const Eigen::VectorXd limits =
       ddm::perMotor(config.model.max_torque, data.torqueDim(), "model/max_torque");

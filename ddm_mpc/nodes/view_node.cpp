@@ -21,7 +21,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "pictures.h"
+#include "view_images.h"
 
 namespace ddm {
 namespace {
@@ -63,7 +63,7 @@ class ViewNode {
  private:
   /// An image, kept because each new model encodes it to another feature.
   struct SeenImage {
-    Grey grey;
+    Image image;
     Eigen::VectorXd feature;  // empty: not yet encoded by the current model
   };
   struct Output {
@@ -131,8 +131,8 @@ class ViewNode {
     const auto show = [](auto* output, const auto& draw) {
       if (!output->outdated || output->publisher.getNumSubscribers() == 0) return;
       output->outdated = false;
-      const auto picture = draw();
-      if (picture != nullptr) output->publisher.publish(picture);
+      const auto drawing = draw();
+      if (drawing != nullptr) output->publisher.publish(drawing);
     };
     show(&prediction_, [this] { return drawPrediction(); });
     show(&feature_space_, [this] { return drawFeatureSpace(); });
@@ -155,11 +155,11 @@ class ViewNode {
   sensor_msgs::ImagePtr drawPrediction() const {
     if (seen_.empty()) return nullptr;
     std::vector<Panel> panels = {
-        {seen_.back().grey, "camera"}, {{}, "reconstruction"}, {{}, "prediction"}};
+        {seen_.back().image, "camera"}, {{}, "reconstruction"}, {{}, "prediction"}};
     if (model_) {
-      panels[1].grey = model_->decode(model_->encode(seen_.back().grey));
+      panels[1].image = model_->decode(model_->encode(seen_.back().image));
       if (plan_features_.cols() > 0) {
-        panels[2].grey = model_->decode(plan_features_.rightCols(1));
+        panels[2].image = model_->decode(plan_features_.rightCols(1));
         panels[2].caption += ", " + std::to_string(plan_features_.cols() - 1) + " steps ahead";
       }
     }
@@ -172,7 +172,7 @@ class ViewNode {
     FeatureOverlay overlay;
     overlay.experience.resize(model_->featureDim(), static_cast<Eigen::Index>(seen_.size()));
     for (std::size_t i = 0; i < seen_.size(); ++i) {
-      if (seen_[i].feature.size() == 0) seen_[i].feature = model_->encode(seen_[i].grey);
+      if (seen_[i].feature.size() == 0) seen_[i].feature = model_->encode(seen_[i].image);
       overlay.experience.col(static_cast<Eigen::Index>(i)) = seen_[i].feature;
     }
     if (!seen_.empty()) overlay.current = seen_.back().feature;

@@ -49,12 +49,12 @@ class Controller {
   void setGoal(const py::object& image) {
     const Images goal = Images::single(image, "image");
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (policy_) policy_->setGoal(goal.grey(0, model_->imageSize()));
+    if (policy_) policy_->setGoal(goal.greyValues(0, model_->imageSize()));
   }
 
   py::array_t<double> act(const py::object& image, bool explore) {
     const Images single = Images::single(image, "image");
-    const Grey grey = model_ ? single.grey(0, model_->imageSize()) : Grey();
+    const Image seen = model_ ? single.greyValues(0, model_->imageSize()) : Image();
     Decision decision;
     {
       const py::gil_scoped_release without_gil;
@@ -65,7 +65,7 @@ class Controller {
             "explore must be the same for all images of an episode: call reset() before the first "
             "image of the next episode");
       }
-      decision = explorer_->decide(grey);
+      decision = explorer_->decide(seen);
     }
     return arrayOf(decision.torque);
   }

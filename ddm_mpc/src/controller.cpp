@@ -14,11 +14,11 @@ namespace ddm {
 using Clock = std::chrono::steady_clock;
 
 /// One step of Algorithm 1: answers the image y_t with the torque u_t.
-Decision EpsilonGreedy::decide(const Grey& grey) {
+Decision EpsilonGreedy::decide(const Image& image) {
   Decision decision;
   if (policy_ != nullptr) {
     if (acted_) policy_->apply(*acted_);
-    policy_->observe(grey);
+    policy_->observe(image);
     decision.goal_distance = policy_->goalDistance();
   }
   if (held_steps_left_ == 0) drawTorque();
@@ -51,10 +51,10 @@ void EpsilonGreedy::drawTorque() {
 }
 
 /// Encodes the image, z_t = g^-1(y_t) (eq. 3a), and adds z_t to the controller state x_t (eq. 8).
-void MpcPolicy::observe(const Grey& grey) {
+void MpcPolicy::observe(const Image& image) {
   began_ = arrival_.value_or(Clock::now());
   arrival_.reset();
-  const Eigen::VectorXd z = model_->encode(grey);
+  const Eigen::VectorXd z = model_->encode(image);
   if (predicted_.size() > 0) offset_ += offset_gain_ * (z - predicted_ - offset_);
   x_.observe(z);
 }
@@ -129,7 +129,7 @@ EpsilonGreedy::EpsilonGreedy(std::shared_ptr<Policy> policy, const Options& opti
   policy_->startTrial(id);
 }
 
-void EpsilonGreedy::setGoal(const Grey& goal) {
+void EpsilonGreedy::setGoal(const Image& goal) {
   if (policy_ != nullptr) policy_->setGoal(goal);
 }
 

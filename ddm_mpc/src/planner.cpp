@@ -97,15 +97,15 @@ Plan Planner::solve(std::mt19937_64* rng, const std::function<bool()>& stop) {
 
   Plan plan;
   plan.goal_feature = cost_.goalFeature();
-  Minimum best;
+  SolverResult best;
   const std::optional<Eigen::MatrixXd> proposal = cost_.proposal();
   for (int start = proposal ? kProposal : 0; start < options_.num_starts && !stopped; ++start) {
     const Eigen::MatrixXd v = start == kProposal ? unbounded(*proposal) : startOf(start, rng);
-    Minimum minimum =
+    SolverResult result =
         minimise(std::ref(cost), Eigen::Map<const Eigen::VectorXd>(v.data(), v.size()), solver);
-    plan.iterations += minimum.iterations;
-    plan.evaluations += minimum.evaluations;
-    if (minimum.cost < best.cost) best = std::move(minimum);
+    plan.iterations += result.iterations;
+    plan.evaluations += result.evaluations;
+    if (result.cost < best.cost) best = std::move(result);
   }
   if (std::isfinite(best.cost)) {
     plan.status = stopped            ? PlanStatus::kTimeLimit

@@ -22,7 +22,7 @@ namespace {
 class ConstantPolicy : public Policy {
  public:
   void startTrial(const TrialId& id) override { trials.push_back(id.trial); }
-  void observe(const Grey& /*grey*/) override { ++num_images; }
+  void observe(const Image& /*image*/) override { ++num_images; }
   Answer answer() override {
     Answer answer;
     answer.torque = Eigen::VectorXd::Constant(1, kTorque);
@@ -51,7 +51,7 @@ EpsilonGreedy::Options explore(double epsilon, int hold_steps = 1) {
 std::vector<Decision> decide(EpsilonGreedy* policy, int num_steps) {
   std::vector<Decision> decisions;
   for (int step = 0; step < num_steps; ++step) {
-    decisions.push_back(policy->decide(randomGrey(8, step)));
+    decisions.push_back(policy->decide(randomImage(8, step)));
   }
   return decisions;
 }
@@ -77,12 +77,12 @@ TEST(EpsilonGreedy, LetsThePolicyExploreWhereRandomTorquesAreWantedAndNowhereEls
 TEST(EpsilonGreedy, TellsThePolicyWhatActedBeforeTheNextImage) {
   const auto onlooker = std::make_shared<ConstantPolicy>();
   EpsilonGreedy policy(onlooker, explore(0.0), TrialId());
-  policy.decide(randomGrey(8, 1));
-  policy.decide(randomGrey(8, 2));  // the first decision acted
+  policy.decide(randomImage(8, 1));
+  policy.decide(randomImage(8, 2));  // the first decision acted
   policy.correctTorque(Eigen::VectorXd::Constant(1, 0.5));
-  policy.decide(randomGrey(8, 3));
+  policy.decide(randomImage(8, 3));
   policy.startSegment();  // no single torque acted
-  policy.decide(randomGrey(8, 4));
+  policy.decide(randomImage(8, 4));
   EXPECT_EQ(onlooker->applied, (std::vector<double>{ConstantPolicy::kTorque, 0.5}));
   EXPECT_EQ(onlooker->num_segments, 1);
   EXPECT_EQ(onlooker->num_images, 4);
@@ -187,7 +187,7 @@ std::vector<double> torquesOfATrial(Policy* policy, const TrialId& id) {
   policy->startTrial(id);
   std::vector<double> torques;
   for (int step = 0; step < kNumSteps; ++step) {
-    policy->observe(randomGrey(8, 50 + step));
+    policy->observe(randomImage(8, 50 + step));
     const Answer answer = policy->answer();
     EXPECT_EQ(answer.torque, answer.plan->torques.col(0));
     torques.push_back(answer.torque[0]);
@@ -204,13 +204,13 @@ TEST(MpcPolicy, PlansToTheGoalItIsGivenWhateverTheModelHas) {
     MpcPolicy policy(model, MpcOptions());
     EXPECT_EQ(policy.hasGoal(), model_has_goal);
     policy.startTrial(TrialId());
-    policy.observe(randomGrey(8, 3));
+    policy.observe(randomImage(8, 3));
     if (!model_has_goal) {
       EXPECT_THROW(policy.plan(), std::logic_error);
     }
     for (const unsigned seed : {4U, 5U}) {
-      policy.setGoal(randomGrey(8, seed));
-      EXPECT_EQ(policy.plan().goal_feature, model->encode(randomGrey(8, seed)));
+      policy.setGoal(randomImage(8, seed));
+      EXPECT_EQ(policy.plan().goal_feature, model->encode(randomImage(8, seed)));
     }
   }
 }
@@ -270,8 +270,8 @@ TEST(MpcPolicy, TellsTheDistanceToTheGoalInUnitsOfTheSpread) {
   policy.startTrial({});
   policy.observe(random.goal());
   EXPECT_NEAR(policy.goalDistance().value(), 0.0, 1e-12);
-  policy.observe(randomGrey(8, 50));
-  const double distance = (model->encode(randomGrey(8, 50)) - model->goalFeature()).norm();
+  policy.observe(randomImage(8, 50));
+  const double distance = (model->encode(randomImage(8, 50)) - model->goalFeature()).norm();
   EXPECT_GT(distance, 0.01);
   EXPECT_NEAR(policy.goalDistance().value(), 4.0 * distance, 1e-12);
 }
@@ -282,15 +282,15 @@ TEST(MpcPolicy, RemembersTheTorqueThatWasAppliedWhoeverDecidedIt) {
   const auto secondPlan = [&](double applied) {
     MpcPolicy policy(model, MpcOptions());
     policy.startTrial(id);
-    policy.observe(randomGrey(8, 3));
+    policy.observe(randomImage(8, 3));
     policy.apply(Eigen::VectorXd::Constant(1, applied));
-    policy.observe(randomGrey(8, 4));
+    policy.observe(randomImage(8, 4));
     return policy.plan();
   };
   History x(2, 2, 1);
-  x.observe(model->encode(randomGrey(8, 3)));
+  x.observe(model->encode(randomImage(8, 3)));
   x.apply(Eigen::VectorXd::Constant(1, 5.0));
-  x.observe(model->encode(randomGrey(8, 4)));
+  x.observe(model->encode(randomImage(8, 4)));
   ModelPlanner planner(*model, MpcOptions());
   std::mt19937_64 rng = randomStream(id, StreamRole::kPlannerStarts);
   EXPECT_EQ(secondPlan(5.0).torques, planner.solve(x, model->goalFeature(), &rng).torques);
@@ -307,13 +307,13 @@ TEST(MpcPolicy, AveragesTheErrorsOfItsPredictionsAndForgetsThemWithTheTrial) {
   Eigen::VectorXd offset = Eigen::VectorXd::Zero(2);
   policy.startTrial(TrialId());
   for (int step = 0; step < 4; ++step) {
-    const Eigen::VectorXd z = model->encode(randomGrey(8, 50 + step));
+    const Eigen::VectorXd z = model->encode(randomImage(8, 50 + step));
     if (step > 0) {
       offset = 0.6 * offset + 0.4 * (z - model->predict(x, u));
       x.apply(u);
     }
     x.observe(z);
-    policy.observe(randomGrey(8, 50 + step));
+    policy.observe(randomImage(8, 50 + step));
     if (step < 3) policy.apply(u);
   }
   const Plan plan = policy.plan();
@@ -321,9 +321,9 @@ TEST(MpcPolicy, AveragesTheErrorsOfItsPredictionsAndForgetsThemWithTheTrial) {
       plan.features.col(1).isApprox(model->predict(x, plan.torques.col(0)) + offset, 1e-12));
   policy.apply(u);
   policy.startTrial(TrialId());
-  policy.observe(randomGrey(8, 3));
+  policy.observe(randomImage(8, 3));
   History rest(2, 2, 1);
-  rest.observe(model->encode(randomGrey(8, 3)));
+  rest.observe(model->encode(randomImage(8, 3)));
   const Plan next = policy.plan();
   EXPECT_TRUE(next.features.col(1).isApprox(model->predict(rest, next.torques.col(0)), 1e-12));
 }
@@ -336,7 +336,7 @@ TEST(MpcPolicy, CutsAPlanShortWhenTheBudgetOrTheStopSaysSo) {
     policy.setStop([stop] { return stop; });
     policy.startTrial(TrialId());
     policy.setArrival(std::chrono::steady_clock::now() - age);
-    policy.observe(randomGrey(8, 3));
+    policy.observe(randomImage(8, 3));
     return policy.plan();
   };
   const Plan free = firstPlan(0.0, std::chrono::seconds(100), false);

@@ -139,8 +139,8 @@ TEST_F(MpcNodeTest, AnswersAnImageOnlyOnceAndNoneFromBeforeTheStartAndNamesTheSi
       2000.0);  // later than all images of other tests, the last of which the node remembers
   begin(goal);
   const ros::Time before = goal.start - ros::Duration(1.0);
-  client_.publish(encodeImage(randomGrey(kSize, 1), kSize, before, ""));
-  const sensor_msgs::Image image = encodeImage(randomGrey(kSize, 1), kSize, goal.start, "");
+  client_.publish(encodeImage(randomImage(kSize, 1), kSize, before, ""));
+  const sensor_msgs::Image image = encodeImage(randomImage(kSize, 1), kSize, goal.start, "");
   ASSERT_TRUE(waitUntil([&] {  // of images that come at once the node takes the newest alone
     client_.publish(image);
     return torque_.messages.size() == 1;
@@ -166,7 +166,7 @@ TEST_F(MpcNodeTest, AbortsWithZeroTorqueWhenTheImagesChangeTheirSize) {
 
 TEST_F(MpcNodeTest, AbortsAtAnImageThatHasNoStamp) {
   begin(trialGoal(10, 1.0));
-  client_.publish(encodeImage(randomGrey(kSize, 1), kSize, ros::Time(), ""));
+  client_.publish(encodeImage(randomImage(kSize, 1), kSize, ros::Time(), ""));
   expectEnd(State::ABORTED, {"no stamp"});
 }
 
@@ -196,7 +196,7 @@ TEST_F(MpcNodeTest, WaitsForTheGoalImageOfTheTrialAndTakesNewerOnes) {
   RandomModelOptions options;
   const Ddm model = randomModel(options);
   const auto isOf = [&model](unsigned seed, const ddm_msgs::Plan& plan) {
-    const Eigen::VectorXd z = model.encode(randomGrey(kSize, seed));
+    const Eigen::VectorXd z = model.encode(randomImage(kSize, seed));
     return plan.goal_feature == std::vector<double>(z.data(), z.data() + z.size());
   };
   ASSERT_TRUE(waitUntil([this] { return client_.goalImageIsHeard(); }));

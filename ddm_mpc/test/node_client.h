@@ -94,14 +94,14 @@ class NodeClient {
   /// @return its stamp
   ros::Time publishImage(int size, unsigned seed) {
     const ros::Time stamp = nextStamp();
-    image_.publish(encodeImage(randomGrey(size, seed), size, stamp, "camera"));
+    image_.publish(encodeImage(randomImage(size, seed), size, stamp, "camera"));
     return stamp;
   }
 
   void publish(const sensor_msgs::Image& image) { image_.publish(image); }
 
   void publishGoalImage(int size, unsigned seed, const ros::Time& stamp) {
-    goal_image_.publish(encodeImage(randomGrey(size, seed), size, stamp, "camera"));
+    goal_image_.publish(encodeImage(randomImage(size, seed), size, stamp, "camera"));
   }
   bool goalImageIsHeard() const { return goal_image_.getNumSubscribers() > 0; }
 

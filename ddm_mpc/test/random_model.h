@@ -15,12 +15,12 @@
 
 namespace ddm {
 /// Random grey values.
-inline Grey randomGrey(int image_size, std::uint64_t seed) {
+inline Image randomImage(int image_size, std::uint64_t seed) {
   std::mt19937_64 rng(seed);
   std::uniform_int_distribution<int> byte(0, 255);
-  Grey grey(static_cast<std::size_t>(image_size) * image_size);
-  for (std::uint8_t& k : grey) k = static_cast<std::uint8_t>(byte(rng));
-  return grey;
+  Image image(static_cast<std::size_t>(image_size) * image_size);
+  for (std::uint8_t& k : image) k = static_cast<std::uint8_t>(byte(rng));
+  return image;
 }
 
 /// What a test wants of its model.
@@ -52,8 +52,8 @@ inline Ddm randomModel(const RandomModelOptions& options) {
   pca.variance = Eigen::VectorXd::Ones(options.model.pca_dim);
   Eigen::VectorXd theta = testing::randomMatrix(networks.numParams(), 1, options.seed + 1);
   theta.tail(networks.f().numParams()) *= options.gain;
-  Grey goal;
-  if (options.goal) goal = randomGrey(options.image_size, options.seed + 2);
+  Image goal;
+  if (options.goal) goal = randomImage(options.image_size, options.seed + 2);
   return Ddm(options.model, options.image_size, options.torque_dim, pca, theta, goal, ModelInfo());
 }
 

@@ -23,9 +23,9 @@ std::shared_ptr<const Ddm> integrator() {
 }
 
 /// The constant torque that minimises the policy's sum: of k B u to z_ref - z over all steps k.
-double bestTorque(const Ddm& model, const Grey& grey) {
+double bestTorque(const Ddm& model, const Image& image) {
   History x(model.options().order, model.featureDim(), model.torqueDim());
-  x.observe(model.encode(grey));
+  x.observe(model.encode(image));
   const Eigen::VectorXd z = model.predict(x, Eigen::VectorXd::Zero(1));
   const Eigen::VectorXd B = model.predict(x, Eigen::VectorXd::Ones(1)) - z;
   double sum_k = 0.0, sum_k2 = 0.0;
@@ -41,18 +41,18 @@ TEST(ShootingPolicy, AnswersWithATorqueNearTheBestOneAndRepeatsIt) {
   const auto model = integrator();
   ShootingPolicy policy(model, kMaxTorque);
   for (unsigned seed = 0; seed < 10; ++seed) {
-    const Grey grey = randomGrey(8, seed);
+    const Image image = randomImage(8, seed);
     const TrialId id{seed, 0, false};
     policy.startTrial(id);
-    policy.observe(grey);
+    policy.observe(image);
     const Answer answer = policy.answer();
     ASSERT_EQ(answer.torque.size(), 1);
     EXPECT_LE(std::abs(answer.torque[0]), kMaxTorque);
     // the nearest of 100 torques drawn from 12 N m
-    EXPECT_NEAR(answer.torque[0], bestTorque(*model, grey), 1.0);
+    EXPECT_NEAR(answer.torque[0], bestTorque(*model, image), 1.0);
     policy.apply(answer.torque);
     policy.startTrial(id);
-    policy.observe(grey);
+    policy.observe(image);
     EXPECT_EQ(policy.answer().torque, answer.torque);
   }
 }

@@ -1,4 +1,4 @@
-// Tests of view_node from outside: both pictures, pixel by pixel, and bad messages.
+// Tests of view_node from outside: both images, pixel by pixel, and bad messages.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_msgs/Plan.h>
 #include <ddm_msgs/testing/node_main.h>
@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "node_client.h"
-#include "pictures.h"
+#include "view_images.h"
 
 namespace ddm {
 namespace {
@@ -24,8 +24,8 @@ Ddm modelOfSeed(unsigned seed) {
 }
 
 /// Images are shown once each, all tests together: view_node remembers them, and so does this.
-std::vector<Grey>& shownImages() {
-  static std::vector<Grey> images;
+std::vector<Image>& shownImages() {
+  static std::vector<Image> images;
   return images;
 }
 
@@ -39,7 +39,7 @@ class ViewNodeTest : public ::testing::Test {
   }
 
   ros::Time showImage(unsigned seed) {
-    shownImages().push_back(randomGrey(kSize, seed));
+    shownImages().push_back(randomImage(kSize, seed));
     return client_.publishImage(kSize, seed);
   }
 
@@ -52,13 +52,13 @@ class ViewNodeTest : public ::testing::Test {
     return plan;
   }
 
-  static Grey lastPredicted(const Ddm& model, const ddm_msgs::Plan& plan) {
+  static Image lastPredicted(const Ddm& model, const ddm_msgs::Plan& plan) {
     return model.decode(Eigen::Map<const Eigen::VectorXd>(
         &plan.feature[plan.feature.size() - model.featureDim()], model.featureDim()));
   }
 
   /// The newest prediction image has these three panels; no grey values stand for a black one.
-  bool panelsAre(const std::vector<Grey>& panels) const {
+  bool panelsAre(const std::vector<Image>& panels) const {
     if (prediction_.messages.empty()) return false;
     const sensor_msgs::Image& image = prediction_.messages.back();
     for (int i = 0; i < 3; ++i) {
@@ -73,7 +73,7 @@ class ViewNodeTest : public ::testing::Test {
     return true;
   }
 
-  /// The newest picture of the feature space is the one drawn here.
+  /// The newest image of the feature space is the one drawn here.
   bool planeIs(const Ddm& model, const ddm_msgs::Plan& plan) const {
     if (plane_->messages.empty()) return false;
     FeatureOverlay overlay;
@@ -108,17 +108,17 @@ TEST_F(ViewNodeTest, ShowsImageReconstructionAndPredictionSideBySideUntilAPlanFa
   const ddm_msgs::Plan plan = randomPlan(1);
   client_.publish(modelMessage(model));
   const ros::Time stamp = showImage(2);
-  const Grey& seen = shownImages().back();
+  const Image& seen = shownImages().back();
   ASSERT_TRUE(waitUntil([&] {
     plan_.publish(plan);  // again and again: a plan that comes before the model is forgotten
     return panelsAre({seen, model.decode(model.encode(seen)), lastPredicted(model, plan)});
   }));
-  const sensor_msgs::Image& picture = prediction_.messages.back();
-  EXPECT_EQ(picture.header.stamp, stamp);
-  EXPECT_EQ(picture.header.frame_id, "camera");
-  EXPECT_EQ(picture.encoding, sensor_msgs::image_encodings::MONO8);
-  EXPECT_EQ(picture.height, static_cast<std::uint32_t>(kPanel + kPanelCaption));
-  EXPECT_EQ(picture.width, static_cast<std::uint32_t>(3 * kPanel + 6));
+  const sensor_msgs::Image& image = prediction_.messages.back();
+  EXPECT_EQ(image.header.stamp, stamp);
+  EXPECT_EQ(image.header.frame_id, "camera");
+  EXPECT_EQ(image.encoding, sensor_msgs::image_encodings::MONO8);
+  EXPECT_EQ(image.height, static_cast<std::uint32_t>(kPanel + kPanelCaption));
+  EXPECT_EQ(image.width, static_cast<std::uint32_t>(3 * kPanel + 6));
   ddm_msgs::Plan failed;
   failed.horizon = 5;
   failed.status = ddm_msgs::Plan::FAILED;
@@ -135,10 +135,10 @@ TEST_F(ViewNodeTest, ShowsTheFeatureSpaceWithExperienceCurrentGoalAndPlan) {
     plan_.publish(plan);  // again and again: a plan that comes before the model is forgotten
     return planeIs(model, plan);
   }));
-  const sensor_msgs::Image& picture = plane_->messages.back();
-  EXPECT_EQ(picture.encoding, sensor_msgs::image_encodings::RGB8);
-  EXPECT_EQ(picture.width, static_cast<std::uint32_t>(FeaturePlane::kWidth));
-  EXPECT_EQ(picture.height, picture.width);
+  const sensor_msgs::Image& image = plane_->messages.back();
+  EXPECT_EQ(image.encoding, sensor_msgs::image_encodings::RGB8);
+  EXPECT_EQ(image.width, static_cast<std::uint32_t>(FeaturePlane::kWidth));
+  EXPECT_EQ(image.height, image.width);
 }
 
 TEST_F(ViewNodeTest, ForgetsThePlanWithTheModelAndShowsTheLastStateToSomebodyWhoComesLate) {
@@ -154,7 +154,7 @@ TEST_F(ViewNodeTest, DropsBadMessagesWithAWarningAndGoesOn) {
   client_.publish(modelMessage(model));
   ASSERT_TRUE(waitUntil([&] { return planeIs(model, ddm_msgs::Plan()); }));
 
-  sensor_msgs::Image image = encodeImage(randomGrey(kSize, 5), kSize, client_.nextStamp(), "");
+  sensor_msgs::Image image = encodeImage(randomImage(kSize, 5), kSize, client_.nextStamp(), "");
   image.encoding = "colourful";
   ddm_msgs::Plan not_finite = randomPlan(4);
   not_finite.feature[3] = std::numeric_limits<double>::quiet_NaN();
@@ -177,7 +177,7 @@ TEST_F(ViewNodeTest, DropsBadMessagesWithAWarningAndGoesOn) {
   }
 
   showImage(6);
-  const Grey& seen = shownImages().back();
+  const Image& seen = shownImages().back();
   const ddm_msgs::Plan plan = randomPlan(7);
   EXPECT_TRUE(waitUntil([&] {
     plan_.publish(plan);

@@ -63,19 +63,19 @@ bool RobotNode::onEnable(std_srvs::SetBool::Request& request,
 void RobotNode::loadGoal() {
   if (options_.goal_file.empty()) return;
   if (!std::filesystem::exists(options_.goal_file)) {
-    log_.warn("there is no picture " + options_.goal_file +
+    log_.warn("there is no goal image " + options_.goal_file +
               " yet: call service take_goal to write it");
     return;
   }
-  const sensor_msgs::Image picture = readPicture(options_.goal_file);
-  if (std::min(picture.width, picture.height) < static_cast<std::uint32_t>(image_size_)) {
+  const sensor_msgs::Image image = readImageFile(options_.goal_file);
+  if (std::min(image.width, image.height) < static_cast<std::uint32_t>(image_size_)) {
     throw std::invalid_argument(
-        "the goal image " + options_.goal_file + " has " + std::to_string(picture.width) + "x" +
-        std::to_string(picture.height) + " pixels, and must have at least image/size " +
+        "the goal image " + options_.goal_file + " has " + std::to_string(image.width) + "x" +
+        std::to_string(image.height) + " pixels, and must have at least image/size " +
         std::to_string(image_size_) +
         " in each direction: remove the file, and write it by service take_goal");
   }
-  publishGoal(encodeImage(decodeImage(picture, image_size_), image_size_, ros::Time::now(), ""));
+  publishGoal(encodeImage(decodeImage(image, image_size_), image_size_, ros::Time::now(), ""));
 }
 
 /// @throws std::runtime_error during an episode
@@ -105,7 +105,7 @@ bool RobotNode::onTakeGoal(std_srvs::Trigger::Request& /*request*/,
   }
   try {  // without the lock, because a slow disk must not delay a stop
     const sensor_msgs::Image goal = shown(*image);
-    if (!options_.goal_file.empty()) writePicture(options_.goal_file, goal);
+    if (!options_.goal_file.empty()) writeImageFile(options_.goal_file, goal);
     publishGoal(goal);
     {
       const std::lock_guard<std::mutex> lock(mutex_);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim_node.h"
 
-#include <ddm_plant_plugin/picture_message.h>
+#include <ddm_plant_plugin/image_message.h>
 #include <image_transport/image_transport.h>
 
 #include <algorithm>
@@ -83,7 +83,7 @@ void SimNode::publishApplied(ddm_msgs::Torque answer) const {
 }
 
 void SimNode::publishGoal(const ros::Time& stamp) {
-  Picture image = environment_->goalImage();
+  RenderedImage image = environment_->goalImage();
   if (image.bytes == goal_image_.bytes) return;
   goal_image_ = std::move(image);
   goal_stamp_ = stamp;

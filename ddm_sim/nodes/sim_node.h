@@ -81,9 +81,9 @@ class SimNode {
   virtual void torqueRefused(const ros::Time& stamp, const std::string& reason) = 0;
 
   std::unique_ptr<Environment> environment_;
-  std::optional<Picture> seen_;  ///< image of this time step; empty if the camera has lost it
-  Picture goal_image_;           ///< goal image that was published last
-  ros::Time goal_stamp_;         ///< stamp of goal_image_
+  std::optional<RenderedImage> seen_;  ///< image of this time step; empty if the camera has lost it
+  RenderedImage goal_image_;           ///< goal image that was published last
+  ros::Time goal_stamp_;               ///< stamp of goal_image_
   /// Ground truth of the images since the last publishGroundTruth().
   std::vector<sensor_msgs::JointState> untold_;
   std::string optical_frame_;  ///< tf frame of the images

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ddm_plant_plugin/picture_message.h>
+#include <ddm_plant_plugin/image_message.h>
 #include <geometry_msgs/TransformStamped.h>
 #include <image_transport/image_transport.h>
 #include <ros/console.h>
@@ -89,15 +89,15 @@ class ViewPublisher {
   /// Publishes the view of the current state, and camera_info with the stamp of the image for nodes
   /// that subscribe to it. If the view cannot be rendered, the node stops publishing views and the
   /// episode continues.
-  /// @param photograph  image of the camera, for plants without a view
-  void publish(const Picture& photograph, const ros::Time& stamp) {
+  /// @param captured  image of the camera, for plants without a view
+  void publish(const RenderedImage& captured, const ros::Time& stamp) {
     for (Info& info : infos_) info.publish(stamp);
     if (view_.getNumSubscribers() == 0) return;
     try {
-      const Picture view = has_view_ ? plant_.view(plant_.state()) : photograph;
+      const RenderedImage view = has_view_ ? plant_.view(plant_.state()) : captured;
       view_.publish(imageMessage(view, stamp, frame_));
     } catch (const std::runtime_error& e) {
-      ROS_ERROR_STREAM("no more pictures for people: " << e.what());
+      ROS_ERROR_STREAM("no more images for people: " << e.what());
       view_.shutdown();
     }
   }

@@ -33,10 +33,10 @@ void complete(const Setting& setting, YAML::Node* blocks) {
   (*blocks)["camera"] = toYaml(setting.camera);
 }
 
-py::array_t<std::uint8_t> arrayOf(const Picture& picture) {
-  std::vector<Eigen::Index> shape = {picture.height, picture.width};
-  if (picture.channels > 1) shape.push_back(picture.channels);
-  return copyOf(picture.bytes.data(), shape);
+py::array_t<std::uint8_t> arrayOf(const RenderedImage& rendered) {
+  std::vector<Eigen::Index> shape = {rendered.height, rendered.width};
+  if (rendered.channels > 1) shape.push_back(rendered.channels);
+  return copyOf(rendered.bytes.data(), shape);
 }
 
 class PythonEnvironment {
@@ -63,7 +63,7 @@ class PythonEnvironment {
                   const py::object& start) {
     std::optional<Eigen::VectorXd> state;
     if (!start.is_none()) state = vectorOf(start, "start", environment_->plant().stateDim());
-    const Picture image =
+    const RenderedImage image =
         environment_->reset(wholeOf<std::uint64_t>(seed, "seed"),
                             wholeOf<std::uint32_t>(trial, "trial"), evaluation, state);
     evaluation_ = evaluation;
@@ -78,7 +78,7 @@ class PythonEnvironment {
     const Eigen::VectorXd u = vectorOf(torque, "torque", plant.torqueDim());
     const Eigen::VectorXd before = plant.state();
     const std::uint64_t begin = environment_->numSteps();
-    const Picture image = environment_->stepUntilSeen(u);
+    const RenderedImage image = environment_->stepUntilSeen(u);
     const auto num_steps = static_cast<int>(environment_->numSteps() - begin);
     const double error = plant.goalError(plant.state());
     const double at_goal = error <= plantInfo().tolerance ? 1.0 : 0.0;

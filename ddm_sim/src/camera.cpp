@@ -104,7 +104,7 @@ void Camera::begin(std::uint64_t seed, std::uint32_t trial, bool evaluation) {
   frame_ = 0;
 }
 
-std::optional<Picture> Camera::photograph(const Picture& picture) {
+std::optional<RenderedImage> Camera::capture(const RenderedImage& rendered) {
   const int frame = frame_++;
   const double draw = std::uniform_real_distribution<double>(0.0, 1.0)(rng_);
   if (frame > 0 && draw < options_.drop_rate) {
@@ -112,35 +112,37 @@ std::optional<Picture> Camera::photograph(const Picture& picture) {
   } else {
     const double turns = frame * dt_ / kBrightnessPeriod;
     const double brightness = 1.0 + options_.brightness_drift * std::sin(kTwoPi * turns + phase_);
-    taken_.push_back(expose(picture, brightness, &noise_));
+    taken_.push_back(expose(rendered, brightness, &noise_));
   }
   if (static_cast<int>(taken_.size()) > options_.delay + 1) taken_.pop_front();
   return taken_.front();
 }
 
-Picture Camera::photographGoal(const Picture& picture) {
+RenderedImage Camera::captureGoal(const RenderedImage& rendered) {
   std::mt19937_64 noise = randomStream(TrialId(), StreamRole::kGoalNoise);
-  return expose(picture, /*brightness=*/1.0, &noise);
+  return expose(rendered, /*brightness=*/1.0, &noise);
 }
 
-Picture Camera::expose(const Picture& picture, double brightness, std::mt19937_64* noise) {
-  Picture out = picture;
+RenderedImage Camera::expose(const RenderedImage& rendered, double brightness,
+                             std::mt19937_64* noise) {
+  RenderedImage out = rendered;
   out.cover.clear();
   const bool cluttered = options_.clutter > 0.0;
   if (brightness == 1.0 && !cluttered && options_.noise_std == 0.0) return out;
-  if (cluttered && picture.cover.empty()) {
+  if (cluttered && rendered.cover.empty()) {
     throw std::invalid_argument(
-        "camera/clutter must be 0 where the plant's picture does not say what it covers; a scene "
+        "camera/clutter must be 0 where the plant's rendered image does not say what it covers; a "
+        "scene "
         "that a model file describes has nuisances of its own, such as plant/colour_shift");
   }
-  if (cluttered && clutter_.size() != picture.numPixels()) {
-    clutter_ = drawClutter(picture.width, picture.height, options_.clutter);
+  if (cluttered && clutter_.size() != rendered.numPixels()) {
+    clutter_ = drawClutter(rendered.width, rendered.height, options_.clutter);
   }
   std::normal_distribution<double> standard_normal;
   for (std::size_t i = 0; i < out.bytes.size(); ++i) {
-    const std::size_t pixel = i / static_cast<std::size_t>(picture.channels);
-    double value = picture.bytes[i] / 255.0;
-    if (cluttered) value += (1.0 - picture.cover[pixel] / 255.0) * clutter_[pixel];
+    const std::size_t pixel = i / static_cast<std::size_t>(rendered.channels);
+    double value = rendered.bytes[i] / 255.0;
+    if (cluttered) value += (1.0 - rendered.cover[pixel] / 255.0) * clutter_[pixel];
     value *= brightness;
     if (options_.noise_std > 0.0) value += options_.noise_std * standard_normal(*noise);
     out.bytes[i] = static_cast<std::uint8_t>(255.0 * std::clamp(value, 0.0, 1.0) + 0.5);

@@ -12,7 +12,7 @@ namespace ddm {
 namespace {
 
 PlantInfo infoOf(const MovingTileOptions& options) {
-  const double size = options.picture_size;
+  const double size = options.image_size;
   const double margin = kTileWidth / 2;
   const Eigen::VectorXd goal = (Eigen::VectorXd(2) << 0.75 * size, 0.25 * size).finished();
   PlantInfo info;
@@ -51,7 +51,7 @@ double reflected(double position, double lowest, double highest) {
 
 }  // namespace
 
-Picture drawTile(int size, const Eigen::Vector2d& centre) {
+RenderedImage drawTile(int size, const Eigen::Vector2d& centre) {
   const std::vector<double> columns = coverage(size, centre.x());
   const std::vector<double> rows = coverage(size, centre.y());
   std::vector<std::uint8_t> bytes;
@@ -66,16 +66,16 @@ Picture drawTile(int size, const Eigen::Vector2d& centre) {
 
 std::vector<std::string> MovingTileOptions::problems() const {
   OptionChecks plant("plant");
-  plant.require(picture_size > kTileWidth, "picture_size", "be more than the tile's 9 pixels",
-                picture_size);
+  plant.require(image_size > kTileWidth, "image_size", "be more than the tile's 9 pixels",
+                image_size);
   plant.add(PlantOptions::problems());
   return plant.problems();
 }
 
 MovingTile::MovingTile(const MovingTileOptions& options)
     : Plant(infoOf(checked(options))),
-      size_(options.picture_size),
-      highest_(options.picture_size - kTileWidth / 2) {}
+      size_(options.image_size),
+      highest_(options.image_size - kTileWidth / 2) {}
 
 Eigen::VectorXd MovingTile::advance(const Eigen::VectorXd& state,
                                     const Eigen::VectorXd& torque) const {
@@ -88,6 +88,8 @@ double MovingTile::distance(const Eigen::VectorXd& state, const Eigen::VectorXd&
   return (state - goal).stableNorm();
 }
 
-Picture MovingTile::draw(const Eigen::VectorXd& state) const { return drawTile(size_, state); }
+RenderedImage MovingTile::draw(const Eigen::VectorXd& state) const {
+  return drawTile(size_, state);
+}
 
 }  // namespace ddm

@@ -58,7 +58,7 @@ Pendulum::Pendulum(const PendulumOptions& options)
       inertia_(options.mass * options.length * options.length / 3.0),
       friction_(options.friction),
       gravity_torque_(options.mass * options.gravity * options.length / 2.0),
-      renderer_(options.picture_size, options.look) {}
+      renderer_(options.image_size, options.look) {}
 
 Eigen::VectorXd Pendulum::advance(const Eigen::VectorXd& state,
                                   const Eigen::VectorXd& torque) const {
@@ -93,7 +93,7 @@ double Pendulum::distance(const Eigen::VectorXd& state, const Eigen::VectorXd& g
   return degreesBetween(state[0], goal[0]);
 }
 
-Picture Pendulum::draw(const Eigen::VectorXd& state) const {
+RenderedImage Pendulum::draw(const Eigen::VectorXd& state) const {
   return renderer_.render({{Eigen::Vector2d::Zero(), state[0], length_}});
 }
 

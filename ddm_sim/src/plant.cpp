@@ -26,17 +26,18 @@ void requireFinite(const char* name, const Eigen::VectorXd& value, Eigen::Index 
 }
 
 /// @throws std::logic_error if draw() returned an invalid image
-void requirePicture(const Picture& picture) {
-  const bool sound = picture.width >= 1 && picture.height >= 1 &&
-                     (picture.channels == 1 || picture.channels == 3) &&
-                     picture.bytes.size() == picture.numBytes() &&
-                     (picture.cover.empty() || picture.cover.size() == picture.numPixels());
+void requireSoundImage(const RenderedImage& rendered) {
+  const bool sound = rendered.width >= 1 && rendered.height >= 1 &&
+                     (rendered.channels == 1 || rendered.channels == 3) &&
+                     rendered.bytes.size() == rendered.numBytes() &&
+                     (rendered.cover.empty() || rendered.cover.size() == rendered.numPixels());
   if (sound) return;
   std::ostringstream message;
-  message << "plant: draw() must return a picture of 1 or 3 channels with a byte for each, and a "
+  message << "plant: draw() must return a rendered image of 1 or 3 channels with a byte for each, "
+             "and a "
              "cover of none or one for each pixel, got "
-          << picture.width << " x " << picture.height << " x " << picture.channels << " with "
-          << picture.bytes.size() << " and " << picture.cover.size() << " bytes";
+          << rendered.width << " x " << rendered.height << " x " << rendered.channels << " with "
+          << rendered.bytes.size() << " and " << rendered.cover.size() << " bytes";
   throw std::logic_error(message.str());
 }
 
@@ -171,14 +172,14 @@ double Plant::rewardOfStep(const Eigen::VectorXd& state, const Eigen::VectorXd& 
   return reward(advance(state, torque), torque).value();
 }
 
-Picture Plant::render(const Eigen::VectorXd& state) const {
+RenderedImage Plant::render(const Eigen::VectorXd& state) const {
   requireFinite("state", state, stateDim());
-  Picture picture = draw(state);
-  requirePicture(picture);
-  return picture;
+  RenderedImage rendered = draw(state);
+  requireSoundImage(rendered);
+  return rendered;
 }
 
-Picture Plant::view(const Eigen::VectorXd& /*state*/) const {
+RenderedImage Plant::view(const Eigen::VectorXd& /*state*/) const {
   throw std::logic_error("plant: this one has no view for people");
 }
 

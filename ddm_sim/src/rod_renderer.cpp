@@ -32,7 +32,7 @@ RodRenderer::RodRenderer(int size, const RodLook& look)
   }
 }
 
-Picture RodRenderer::render(const std::vector<Rod>& rods) const {
+RenderedImage RodRenderer::render(const std::vector<Rod>& rods) const {
   const double gain = 255.0 / edge_softness_;
   const double at_centre_line = gain * rod_half_width_ + 127.5;
 

@@ -59,7 +59,7 @@ TwoLink::TwoLink(const TwoLinkOptions& options)
       mass_(options.mass[0], options.mass[1]),
       friction_(options.friction[0], options.friction[1]),
       gravity_(options.gravity),
-      renderer_(options.picture_size, options.look) {}
+      renderer_(options.image_size, options.look) {}
 
 Eigen::VectorXd TwoLink::advance(const Eigen::VectorXd& state,
                                  const Eigen::VectorXd& torque) const {
@@ -99,7 +99,9 @@ std::vector<Rod> TwoLink::links(const Eigen::VectorXd& state) const {
   return {upper, {upper.end(), state[0] + state[1], length_[1]}};
 }
 
-Picture TwoLink::draw(const Eigen::VectorXd& state) const { return renderer_.render(links(state)); }
+RenderedImage TwoLink::draw(const Eigen::VectorXd& state) const {
+  return renderer_.render(links(state));
+}
 
 Eigen::VectorXd TwoLink::locate(const Eigen::VectorXd& state) const {
   const std::vector<Rod> rods = links(state);

@@ -47,7 +47,7 @@ TEST(RealtimeCamera, ShowsTheFramesOfTheLibraryAndNothingWhereOneIsLost) {
   }));
   int num_lost = 0;
   for (std::size_t t = 0; t < kFrames;) {
-    if (const auto seen = camera.photograph(plant.render(plant.state()))) {
+    if (const auto seen = camera.capture(plant.render(plant.state()))) {
       EXPECT_EQ(client.images[t].data, seen->bytes) << t;
       EXPECT_EQ(client.truths[t].header.stamp, client.images[t].header.stamp) << t;
       EXPECT_EQ(client.truths[t].position, std::vector<double>{plant.state()[0]}) << t;

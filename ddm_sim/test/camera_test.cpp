@@ -23,23 +23,23 @@ using Bytes = std::vector<std::uint8_t>;
 constexpr double kDt = 0.2;  // [s]
 
 /// The rendered image of the current state.
-Picture viewOf(const Plant& plant) { return plant.render(plant.state()); }
+RenderedImage viewOf(const Plant& plant) { return plant.render(plant.state()); }
 
-Picture hangingRod() { return viewOf(Pendulum{PendulumOptions()}); }
+RenderedImage hangingRod() { return viewOf(Pendulum{PendulumOptions()}); }
 
 /// An image that shows the background only.
-Picture black() { return testing::plainPicture(51, 0); }
+RenderedImage black() { return testing::plainImage(51, 0); }
 
 /// The next camera image; empty if the image is lost.
-Bytes photographOf(Camera* camera, const Picture& picture) {
-  const std::optional<Picture> photograph = camera->photograph(picture);
-  return photograph ? photograph->bytes : Bytes();
+Bytes captureOf(Camera* camera, const RenderedImage& rendered) {
+  const std::optional<RenderedImage> captured = camera->capture(rendered);
+  return captured ? captured->bytes : Bytes();
 }
 
 /// The first image of a new camera.
-Bytes photographOf(const CameraOptions& options, const Picture& picture) {
+Bytes captureOf(const CameraOptions& options, const RenderedImage& rendered) {
   Camera camera(options, kDt);
-  return photographOf(&camera, picture);
+  return captureOf(&camera, rendered);
 }
 
 /// Images of a swinging pendulum, one for each step; empty where the camera loses an image.
@@ -48,7 +48,7 @@ std::vector<Bytes> film(Camera* camera, int num_steps) {
   Pendulum plant{PendulumOptions()};
   std::vector<Bytes> out;
   for (int step = 0; step < num_steps; ++step) {
-    out.push_back(camera ? photographOf(camera, viewOf(plant)) : viewOf(plant).bytes);
+    out.push_back(camera ? captureOf(camera, viewOf(plant)) : viewOf(plant).bytes);
     plant.step(Eigen::VectorXd::Constant(1, 3.0));
   }
   return out;
@@ -70,14 +70,14 @@ std::vector<bool> lost(const std::vector<Bytes>& frames) {
 }
 
 /// Committed results were computed from these images.
-TEST(Camera, ShowsTheSamePicturesAsEverWhereAllNuisancesAreOff) {
+TEST(Camera, ShowsTheSameImagesAsEverWhereAllNuisancesAreOff) {
   Camera camera(CameraOptions(), kDt);
   EXPECT_EQ(hashOf(film(&camera, 20)), 0xa5dc86f41e3e2aafULL);
   MovingTile tile{MovingTileOptions()};
   camera.begin(0, 0, false);
   std::vector<Bytes> frames;
   for (int step = 0; step < 20; ++step) {
-    frames.push_back(photographOf(&camera, viewOf(tile)));
+    frames.push_back(captureOf(&camera, viewOf(tile)));
     tile.step(Eigen::Vector2d(1.7, -2.3));
   }
   EXPECT_EQ(hashOf(frames), 0xc521c9e3ec638024ULL);
@@ -85,30 +85,30 @@ TEST(Camera, ShowsTheSamePicturesAsEverWhereAllNuisancesAreOff) {
 
 /// An image that differs from those of this package's plants: wide, in colour, black on its left
 /// half.
-Picture colourful() {
-  Picture picture{40, 10, 3, {}, {}};
-  for (int i = 0; i < picture.height; ++i) {
-    for (int j = 0; j < picture.width; ++j) {
+RenderedImage colourful() {
+  RenderedImage rendered{40, 10, 3, {}, {}};
+  for (int i = 0; i < rendered.height; ++i) {
+    for (int j = 0; j < rendered.width; ++j) {
       const bool plant = j >= 20;
-      picture.cover.push_back(plant ? 255 : 0);
+      rendered.cover.push_back(plant ? 255 : 0);
       const Bytes colour = plant ? Bytes{200, 100, 50} : Bytes{0, 0, 0};
-      picture.bytes.insert(picture.bytes.end(), colour.begin(), colour.end());
+      rendered.bytes.insert(rendered.bytes.end(), colour.begin(), colour.end());
     }
   }
-  return picture;
+  return rendered;
 }
 
 TEST(Camera, PutsGreyClutterBehindAPlantInColour) {
   CameraOptions options;
   options.clutter = 0.5;
-  const Picture picture = colourful();
-  const Bytes image = photographOf(options, picture);
-  Picture grey{40, 10, 1, Bytes(400, 0), Bytes(400, 0)};
-  const Bytes background = photographOf(options, grey);
+  const RenderedImage rendered = colourful();
+  const Bytes image = captureOf(options, rendered);
+  RenderedImage grey{40, 10, 1, Bytes(400, 0), Bytes(400, 0)};
+  const Bytes background = captureOf(options, grey);
   EXPECT_NEAR(*std::max_element(background.begin(), background.end()), 127.5, 1.0);
   for (std::size_t i = 0; i < image.size(); ++i) {
     const std::size_t pixel = i / 3;
-    ASSERT_EQ(image[i], pixel % 40 >= 20 ? picture.bytes[i] : background[pixel]) << i;
+    ASSERT_EQ(image[i], pixel % 40 >= 20 ? rendered.bytes[i] : background[pixel]) << i;
   }
 }
 
@@ -116,13 +116,13 @@ TEST(Camera, AddsNoiseOfTheGivenSpreadToEachFrameIndependently) {
   CameraOptions options;
   options.noise_std = 0.1;
   Camera camera(options, kDt);
-  const Picture rod = hangingRod();
+  const RenderedImage rod = hangingRod();
   const Bytes& clean = rod.bytes;
   std::vector<double> noise;  // of grey pixels, which are never clipped
   std::vector<double> before;
   double sum = 0.0, squares = 0.0, with_last_frame = 0.0;
   for (int frame = 0; frame < 400; ++frame) {
-    const Bytes image = photographOf(&camera, rod);
+    const Bytes image = captureOf(&camera, rod);
     noise.clear();
     for (std::size_t i = 0; i < clean.size(); ++i) {
       if (clean[i] > 110 && clean[i] < 145) noise.push_back((image[i] - clean[i]) / 255.0);
@@ -145,11 +145,11 @@ TEST(Camera, ChangesTheBrightnessOfAllPixelsAlikeInASineOfTheGivenPeriod) {
   CameraOptions options;
   options.brightness_drift = 0.2;
   Camera camera(options, 0.5);  // a period of the brightness has 40 steps
-  const Picture rod = hangingRod();
+  const RenderedImage rod = hangingRod();
   const Bytes& clean = rod.bytes;
   std::vector<double> factor;
   for (int t = 0; t < 80; ++t) {
-    const Bytes image = photographOf(&camera, rod);
+    const Bytes image = captureOf(&camera, rod);
     const auto grey = std::find_if(clean.begin(), clean.end(), [](int k) { return k > 150; });
     factor.push_back(static_cast<double>(image[grey - clean.begin()]) / *grey);
     for (std::size_t i = 0; i < clean.size(); ++i) {
@@ -167,29 +167,29 @@ TEST(Camera, ChangesTheBrightnessOfAllPixelsAlikeInASineOfTheGivenPeriod) {
 TEST(Camera, ShowsClutterAloneWhereThereIsNoPlant) {
   CameraOptions options;
   options.clutter = 0.6;
-  const Bytes background = photographOf(options, black());
+  const Bytes background = captureOf(options, black());
   EXPECT_EQ(*std::max_element(background.begin(), background.end()), 153);  // 0.6 * 255
   const std::set<std::uint8_t> greys(background.begin(), background.end());
   EXPECT_GT(greys.size(), 50U);
 }
 
 TEST(Camera, RefusesClutterBehindAPlantThatDoesNotSayWhatItCovers) {
-  Picture picture = black();
-  picture.cover.clear();
+  RenderedImage rendered = black();
+  rendered.cover.clear();
   CameraOptions options;
-  EXPECT_NO_THROW(Camera(options, kDt).photograph(picture));
+  EXPECT_NO_THROW(Camera(options, kDt).capture(rendered));
   options.clutter = 0.6;
-  EXPECT_THROW(Camera(options, kDt).photograph(picture), std::invalid_argument);
-  EXPECT_THROW(Camera(options, kDt).photographGoal(picture), std::invalid_argument);
+  EXPECT_THROW(Camera(options, kDt).capture(rendered), std::invalid_argument);
+  EXPECT_THROW(Camera(options, kDt).captureGoal(rendered), std::invalid_argument);
 }
 
 TEST(Camera, HasOneBackgroundForAllRuns) {
   CameraOptions options;
   options.clutter = 0.6;
   Camera camera(options, kDt);
-  const Bytes background = photographOf(&camera, black());
+  const Bytes background = captureOf(&camera, black());
   camera.begin(7, 3, true);
-  EXPECT_EQ(photographOf(&camera, black()), background);
+  EXPECT_EQ(captureOf(&camera, black()), background);
 }
 
 TEST(Camera, ShowsTheStateOfSoManyFramesAgoAndAtFirstThatOfTheFirstFrame) {
@@ -210,18 +210,18 @@ TEST(Camera, LosesFramesAtTheGivenRateButNeverTheFirst) {
   CameraOptions options;
   options.drop_rate = 0.1;
   Camera camera(options, kDt);
-  const Picture rod = hangingRod();
+  const RenderedImage rod = hangingRod();
   int num_lost = 0;
   for (std::uint32_t trial = 0; trial < 200; ++trial) {
     camera.begin(1, trial, false);
-    ASSERT_TRUE(camera.photograph(rod)) << trial;
-    for (int t = 1; t < 100; ++t) num_lost += camera.photograph(rod) ? 0 : 1;
+    ASSERT_TRUE(camera.capture(rod)) << trial;
+    for (int t = 1; t < 100; ++t) num_lost += camera.capture(rod) ? 0 : 1;
   }
   const double n = 200 * 99;
   EXPECT_NEAR(num_lost / n, 0.1, 5 * std::sqrt(0.1 * 0.9 / n));
 }
 
-TEST(Camera, GivesTheSamePhotographsInTheSameRunAndOthersInAnother) {
+TEST(Camera, GivesTheSameImagesInTheSameRunAndOthersInAnother) {
   Camera camera(allNuisances(), kDt);
   std::set<std::vector<Bytes>> films;
   std::set<std::vector<bool>> losses;
@@ -242,24 +242,24 @@ TEST(Camera, GivesTheSamePhotographsInTheSameRunAndOthersInAnother) {
   EXPECT_EQ(losses.size(), 12U);
 }
 
-TEST(Camera, TakesTheSameNoisyGoalImageAtAnyTimeAndChangesNoPhotographByIt) {
+TEST(Camera, TakesTheSameNoisyGoalImageAtAnyTimeAndChangesNoImageByIt) {
   CameraOptions options = allNuisances();
   Camera camera(options, kDt);
-  const Picture rod = hangingRod();
-  const Bytes goal = camera.photographGoal(rod).bytes;
+  const RenderedImage rod = hangingRod();
+  const Bytes goal = camera.captureGoal(rod).bytes;
   camera.begin(5, 4, true);
   film(&camera, 10);
-  EXPECT_EQ(camera.photographGoal(rod).bytes, goal);
+  EXPECT_EQ(camera.captureGoal(rod).bytes, goal);
   Camera undisturbed(allNuisances(), kDt);
   undisturbed.begin(5, 4, true);
   camera.begin(5, 4, true);
-  camera.photographGoal(rod);
+  camera.captureGoal(rod);
   EXPECT_EQ(film(&camera, 20), film(&undisturbed, 20));
   options.noise_std = 0.0;
-  const Bytes quiet = Camera(options, kDt).photographGoal(rod).bytes;
+  const Bytes quiet = Camera(options, kDt).captureGoal(rod).bytes;
   EXPECT_NE(quiet, goal);
   options.brightness_drift = 0.0;
-  EXPECT_EQ(Camera(options, kDt).photographGoal(rod).bytes, quiet) << "it is never dark";
+  EXPECT_EQ(Camera(options, kDt).captureGoal(rod).bytes, quiet) << "it is never dark";
 }
 
 }  // namespace

@@ -38,17 +38,17 @@ struct ByHand {
   Pendulum plant{quickPendulum()};
   Camera camera{allNuisances(), quickPendulum().dt};
 
-  std::optional<Picture> begin() {
+  std::optional<RenderedImage> begin() {
     std::mt19937_64 starts = startStream(kSeed, kTrial, true);
     plant.setState(plant.drawStart(starts));
     camera.begin(kSeed, kTrial, true);
     return look();
   }
-  std::optional<Picture> step(double value) {
+  std::optional<RenderedImage> step(double value) {
     plant.step(torqueOf(value));
     return look();
   }
-  std::optional<Picture> look() { return camera.photograph(plant.render(plant.state())); }
+  std::optional<RenderedImage> look() { return camera.capture(plant.render(plant.state())); }
 };
 
 TEST(Environment, GoesOnUnderTheSameTorqueUntilAFrameIsSeenAndCountsTheLostOnes) {
@@ -59,8 +59,8 @@ TEST(Environment, GoesOnUnderTheSameTorqueUntilAFrameIsSeenAndCountsTheLostOnes)
   std::uint64_t steps = 0;
   for (int frame = 1; frame <= 40; ++frame) {
     const double value = frame % 2 == 0 ? 4.0 : -1.0;
-    const Picture seen = environment.stepUntilSeen(torqueOf(value));
-    std::optional<Picture> expected;
+    const RenderedImage seen = environment.stepUntilSeen(torqueOf(value));
+    std::optional<RenderedImage> expected;
     while (!expected) {
       expected = by_hand.step(value);
       ++steps;
@@ -76,7 +76,7 @@ TEST(Environment, GoesOnUnderTheSameTorqueUntilAFrameIsSeenAndCountsTheLostOnes)
 TEST(Environment, BeginsARunAtAGivenStartDigitByDigitWithTheFramesOfThatRun) {
   Environment environment(quickPlant(), allNuisances());
   const Eigen::Vector2d start(0.1 + 0.2, -1e-17);
-  const Picture first = environment.reset(kSeed, kTrial, true, start);
+  const RenderedImage first = environment.reset(kSeed, kTrial, true, start);
   EXPECT_EQ(environment.plant().state(), start);
   ByHand by_hand;
   by_hand.begin();
@@ -101,8 +101,8 @@ TEST(Environment, ChangesNothingWhereAStartIsRefused) {
   EXPECT_EQ(environment.numSteps(), undisturbed.numSteps());
   EXPECT_EQ(environment.applied(), undisturbed.applied());
   for (int t = 0; t < 20; ++t) {
-    const std::optional<Picture> expected = undisturbed.step(torqueOf(1.0));
-    const std::optional<Picture> seen = environment.step(torqueOf(1.0));
+    const std::optional<RenderedImage> expected = undisturbed.step(torqueOf(1.0));
+    const std::optional<RenderedImage> seen = environment.step(torqueOf(1.0));
     ASSERT_EQ(seen.has_value(), expected.has_value());
     if (!seen) continue;
     ASSERT_EQ(seen->bytes, expected->bytes);

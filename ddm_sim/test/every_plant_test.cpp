@@ -111,7 +111,7 @@ TEST_P(EveryPlantTest, HasAnErrorAnImageAPlaceAndARewardInEachState) {
   if (info().start != info().goal) {  // in a balancing task, the initial state is the goal
     EXPECT_GT(plant_->goalError(info().start), info().tolerance);
   }
-  const Picture first = plant_->render(info().start);
+  const RenderedImage first = plant_->render(info().start);
   const Eigen::Index num_places = plant_->visiblePosition(info().start).size();
   const bool has_reward = plant_->reward(info().start, info().max_torque).has_value();
   EXPECT_GE(num_places, 1);
@@ -128,18 +128,18 @@ TEST_P(EveryPlantTest, HasAnErrorAnImageAPlaceAndARewardInEachState) {
       ASSERT_EQ(reward.has_value(), has_reward);
       ASSERT_TRUE(std::isfinite(reward.value_or(0.0)));
     }
-    const Picture picture = plant_->render(state);
-    ASSERT_EQ(picture.width, first.width);
-    ASSERT_EQ(picture.height, first.height);
-    ASSERT_EQ(picture.channels, first.channels);
+    const RenderedImage rendered = plant_->render(state);
+    ASSERT_EQ(rendered.width, first.width);
+    ASSERT_EQ(rendered.height, first.height);
+    ASSERT_EQ(rendered.channels, first.channels);
     // Images of a model file have their own background and no cover. Other images of this package
     // have a cover, see camera/clutter.
     if (GetParam().own) {
-      ASSERT_EQ(picture.cover.empty(), maker_->type() == "mujoco");
+      ASSERT_EQ(rendered.cover.empty(), maker_->type() == "mujoco");
     }
-    for (std::size_t i = 0; !picture.cover.empty() && i < picture.bytes.size(); ++i) {
-      const std::size_t pixel = i / static_cast<std::size_t>(picture.channels);
-      ASSERT_GE(picture.cover[pixel], picture.bytes[i]) << pixel;
+    for (std::size_t i = 0; !rendered.cover.empty() && i < rendered.bytes.size(); ++i) {
+      const std::size_t pixel = i / static_cast<std::size_t>(rendered.channels);
+      ASSERT_GE(rendered.cover[pixel], rendered.bytes[i]) << pixel;
     }
   }
 }

@@ -20,7 +20,7 @@ TEST(FailingPlant, IsTheAnswerToItsResetAndTheNextOneBegins) {
   testing::ToyPlant::Traits traits;
   traits.draw = [&fails](const Eigen::VectorXd&) {
     if (fails) throw std::runtime_error("no display is free");
-    return testing::plainPicture(51, 255);
+    return testing::plainImage(51, 255);
   };
   const auto sim = makeLockstepSim(
       ros::NodeHandle(),

@@ -11,7 +11,7 @@
 namespace ddm {
 namespace {
 
-constexpr int kTilePicture = 51;
+constexpr int kTileImage = 51;
 constexpr double kLowest = 4.5;
 constexpr double kHighest = 46.5;
 
@@ -50,17 +50,17 @@ TEST(MovingTile, StartsInTheMiddleAndHasItsGoalUpAndToTheRightWithinItsReach) {
   EXPECT_EQ(tile.state(), Eigen::Vector2d(25.5, 25.5));
   EXPECT_EQ(tile.goal(), Eigen::Vector2d(38.25, 12.75));
   EXPECT_EQ(tile.goalError(Eigen::Vector2d(38.25 - 3.0, 12.75 + 4.0)), 5.0);
-  options.picture_size = 12;
+  options.image_size = 12;
   EXPECT_EQ(MovingTile(options).goal(), Eigen::Vector2d(7.5, 4.5));
   EXPECT_EQ(MovingTile(options).render(Eigen::Vector2d(6.0, 6.0)).bytes.size(), 144U);
 }
 
-TEST(MovingTile, RefusesAPictureWithoutRoomForTheTileAndAllOtherProblemsWithIt) {
+TEST(MovingTile, RefusesAnImageWithoutRoomForTheTileAndAllOtherProblemsWithIt) {
   MovingTileOptions options;
   options.dt = -1.0;
-  options.picture_size = 9;
+  options.image_size = 9;
   EXPECT_TRUE(testing::throwsNaming<std::invalid_argument>([&] { MovingTile tile(options); },
-                                                           {"plant/picture_size", "plant/dt"}));
+                                                           {"plant/image_size", "plant/dt"}));
 }
 
 /// The grey value of a pixel by the formula in the header.
@@ -76,11 +76,11 @@ double greyOf(int row, int column, double x, double y) {
 TEST(DrawTile, RoundsTheGreyOfItsFormulaInsideAndAtTheBorder) {
   for (const Eigen::Vector2d& at : {Eigen::Vector2d(20.5, 10.5), Eigen::Vector2d(23.37, 7.81),
                                     Eigen::Vector2d(4.5, 46.5), Eigen::Vector2d(51.0, 0.0)}) {
-    const Picture picture = drawTile(kTilePicture, at);
-    EXPECT_EQ(picture.cover, picture.bytes);
-    for (int i = 0; i < kTilePicture; ++i) {
-      for (int j = 0; j < kTilePicture; ++j) {
-        const int grey = picture.bytes[static_cast<std::size_t>(i * kTilePicture + j)];
+    const RenderedImage rendered = drawTile(kTileImage, at);
+    EXPECT_EQ(rendered.cover, rendered.bytes);
+    for (int i = 0; i < kTileImage; ++i) {
+      for (int j = 0; j < kTileImage; ++j) {
+        const int grey = rendered.bytes[static_cast<std::size_t>(i * kTileImage + j)];
         ASSERT_NEAR(grey, 255 * greyOf(i, j, at.x(), at.y()), 0.5 + 1e-9) << i << ", " << j;
       }
     }
@@ -88,10 +88,10 @@ TEST(DrawTile, RoundsTheGreyOfItsFormulaInsideAndAtTheBorder) {
 }
 
 TEST(DrawTile, IsBlackWhereTheTileIsFarOutside) {
-  const std::vector<std::uint8_t> black(kTilePicture * kTilePicture, 0);
+  const std::vector<std::uint8_t> black(kTileImage * kTileImage, 0);
   for (const double far : {-9.0, 60.0, -1e17, std::numeric_limits<double>::max()}) {
-    EXPECT_EQ(drawTile(kTilePicture, {far, 25.5}).bytes, black) << far;
-    EXPECT_EQ(drawTile(kTilePicture, {25.5, far}).bytes, black) << far;
+    EXPECT_EQ(drawTile(kTileImage, {far, 25.5}).bytes, black) << far;
+    EXPECT_EQ(drawTile(kTileImage, {25.5, far}).bytes, black) << far;
   }
 }
 

@@ -103,9 +103,9 @@ TEST(PlantRegistry, ReadsThePlantThatItsTypeNamesWithItsOwnKeys) {
   EXPECT_EQ(yaml(plantOfText("{}")->block()), yaml(PendulumOptions()));
   EXPECT_EQ(yaml(plantOfText("plant: {type: moving_tile}")->block()), yaml(MovingTileOptions()));
   EXPECT_EQ(yaml(plantOfText("plant: {type: two_link}")->block()), yaml(TwoLinkOptions()));
-  const auto tile = plantOfText("plant: {type: moving_tile, picture_size: 30, max_torque: [3, 4]}");
+  const auto tile = plantOfText("plant: {type: moving_tile, image_size: 30, max_torque: [3, 4]}");
   EXPECT_EQ(tile->type(), "moving_tile");
-  EXPECT_EQ(tile->block()["picture_size"].as<int>(), 30);
+  EXPECT_EQ(tile->block()["image_size"].as<int>(), 30);
   EXPECT_EQ(tile->make()->info().max_torque, Eigen::Vector2d(3.0, 4.0));
 }
 

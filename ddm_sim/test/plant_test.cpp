@@ -102,15 +102,16 @@ TEST(Plant, IsRewardedAfterAStepUnderTheTorqueThatActed) {
 }
 
 TEST(Plant, RefusesAnImageThatIsNotWhatItsSizeSays) {
-  const Picture sound{3, 2, 3, std::vector<std::uint8_t>(18, 7), std::vector<std::uint8_t>(6, 9)};
-  Picture few = sound, dim = sound, uncovered = sound, flat = sound, none;
+  const RenderedImage sound{3, 2, 3, std::vector<std::uint8_t>(18, 7),
+                            std::vector<std::uint8_t>(6, 9)};
+  RenderedImage few = sound, dim = sound, uncovered = sound, flat = sound, none;
   few.bytes.pop_back();
   dim.channels = 2;
   uncovered.cover.pop_back();
   flat.height = 0;
   Traits traits;
-  for (const Picture& picture : {few, dim, uncovered, flat, none}) {
-    traits.draw = [picture](const Eigen::VectorXd&) { return picture; };
+  for (const RenderedImage& rendered : {few, dim, uncovered, flat, none}) {
+    traits.draw = [rendered](const Eigen::VectorXd&) { return rendered; };
     EXPECT_THROW(ToyPlant(traits).render(Eigen::Vector2d::Zero()), std::logic_error);
   }
   traits.draw = [sound](const Eigen::VectorXd&) { return sound; };

@@ -62,7 +62,7 @@ class SceneCameras : public SimNodeTest {
   }
 };
 
-TEST_F(SceneCameras, LatchTheirOpticalFrameAndTheInfoOfTheLearnersPictureAndOfTheView) {
+TEST_F(SceneCameras, LatchTheirOpticalFrameAndTheInfoOfTheLearnersImageAndOfTheView) {
   Collected<tf2_msgs::TFMessage> frames("/tf_static");
   Infos small(topics::kImageInfo);
   Infos large(topics::kViewInfo);

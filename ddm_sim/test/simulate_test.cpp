@@ -78,7 +78,7 @@ TEST_F(Simulate, WritesTheTrajectoryOfThePlant) {
   }
 }
 
-TEST_F(Simulate, WritesTheTrajectoryAndThePicturesOfTheMovingTile) {
+TEST_F(Simulate, WritesTheTrajectoryAndTheImagesOfTheMovingTile) {
   const fs::path frames = folder_ / "frames";
   const Outcome result = run("--plant moving_tile --start 44.25,6 --frames " + frames.string(),
                              // reflection, saturation, reflection

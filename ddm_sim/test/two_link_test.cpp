@@ -145,8 +145,8 @@ TEST(TwoLink, LooksLikeOneRodWhereItIsStraight) {
   const TwoLink arm{TwoLinkOptions()};
   const Pendulum rod{PendulumOptions()};  // as long as both links together
   for (const double angle : {0.0, kPi, 0.3}) {
-    const Picture of_arm = arm.render(Eigen::Vector4d(angle, 0.0, 1.0, 1.0));
-    const Picture of_rod = rod.render(Eigen::Vector2d(angle, 0.0));
+    const RenderedImage of_arm = arm.render(Eigen::Vector4d(angle, 0.0, 1.0, 1.0));
+    const RenderedImage of_rod = rod.render(Eigen::Vector2d(angle, 0.0));
     ASSERT_EQ(of_arm.bytes.size(), of_rod.bytes.size());
     for (std::size_t i = 0; i < of_arm.bytes.size(); ++i) {
       ASSERT_NEAR(of_arm.bytes[i], of_rod.bytes[i], 1) << angle << ", pixel " << i;

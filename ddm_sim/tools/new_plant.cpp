@@ -3,7 +3,7 @@
 #include <ddm_common/image_codec.h>
 #include <ddm_common/plain_file.h>
 #include <ddm_mujoco/plant_proposal.h>
-#include <ddm_plant_plugin/picture_message.h>
+#include <ddm_plant_plugin/image_message.h>
 #include <ddm_plant_plugin/plant_config.h>
 #include <ros/package.h>
 
@@ -63,7 +63,7 @@ void requireRoom(const Arguments& arguments) {
     throw po::error("option --out must be in a folder that exists, got " + folder.string() +
                     ": make it first");
   }
-  for (const std::string& file : {arguments.out, pictureFile(arguments.out)}) {
+  for (const std::string& file : {arguments.out, imageFile(arguments.out)}) {
     if (arguments.force || !fs::exists(file)) continue;
     throw po::error(file + " is there already: choose another name, or replace it by --force");
   }
@@ -110,10 +110,10 @@ constexpr int kCell = 204;  // size of an image, four times the learner's [pixel
 constexpr int kColumns = 6;
 constexpr int kLine = 22;  // height of a line of text [pixels]
 
-cv::Mat colourOf(Picture picture) {
-  cv::Mat out(picture.height, picture.width, picture.channels == 1 ? CV_8UC1 : CV_8UC3,
-              picture.bytes.data());
-  if (picture.channels == 1) cv::cvtColor(out, out, cv::COLOR_GRAY2RGB);
+cv::Mat colourOf(RenderedImage rendered) {
+  cv::Mat out(rendered.height, rendered.width, rendered.channels == 1 ? CV_8UC1 : CV_8UC3,
+              rendered.bytes.data());
+  if (rendered.channels == 1) cv::cvtColor(out, out, cv::COLOR_GRAY2RGB);
   return out.clone();
 }
 
@@ -140,12 +140,12 @@ void writeContactSheet(const PlantProposal& proposal, const Plant& plant, const 
     cv::resize(colourOf(plant.render(state)), sheet(cv::Rect(x, y + kLine + kCell, kCell, kCell)),
                {kCell, kCell}, 0, 0, cv::INTER_NEAREST);
   }
-  Picture picture;
-  picture.width = sheet.cols;
-  picture.height = sheet.rows;
-  picture.channels = 3;
-  picture.bytes.assign(sheet.data, sheet.data + sheet.total() * sheet.elemSize());
-  writePicture(file, imageMessage(picture, ros::Time()));
+  RenderedImage rendered;
+  rendered.width = sheet.cols;
+  rendered.height = sheet.rows;
+  rendered.channels = 3;
+  rendered.bytes.assign(sheet.data, sheet.data + sheet.total() * sheet.elemSize());
+  writeImageFile(file, imageMessage(rendered, ros::Time()));
 }
 
 void printProposal(const PlantProposal& proposal) {
@@ -219,10 +219,10 @@ void newPlant(const Arguments& arguments) {
   writeFileAtomically(draft, plantText(arguments.model, arguments.out, proposal));
   const std::unique_ptr<Plant> plant = makePlant(*readPlantFiles({draft}));
   printCheck(model->get(), proposal, checkPlant(proposal, plant.get()));
-  writeContactSheet(proposal, *plant, pictureFile(arguments.out));
+  writeContactSheet(proposal, *plant, imageFile(arguments.out));
   renameDurably(draft, arguments.out);
 
-  std::cout << "\nwrote " << arguments.out << " and " << pictureFile(arguments.out) << "\nset in "
+  std::cout << "\nwrote " << arguments.out << " and " << imageFile(arguments.out) << "\nset in "
             << arguments.out << ":";
   for (const std::string& key : proposal.to_set) std::cout << " plant/" << key;
   const std::string name =

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 using boost::algorithm::join;
 using Texts = std::vector<std::string>;
 
-std::string pictureFile(const std::string& plant_file) {
+std::string imageFile(const std::string& plant_file) {
   return fs::path(plant_file).replace_extension(".png").string();
 }
 
@@ -108,7 +108,7 @@ std::string plantText(const std::string& model, const std::string& plant_file,
   out << comment("A plant of " + fs::path(model).filename().string() +
                      ", proposed by new_plant. It works as it is; lines with SET are values that "
                      "the model file does not say. Images: " +
-                     fs::path(pictureFile(plant_file)).filename().string() +
+                     fs::path(imageFile(plant_file)).filename().string() +
                      ". All keys: config/mujoco_pendulum.yaml of ddm_sim.",
                  "")
       << "#\n"

@@ -10,7 +10,7 @@
 namespace ddm {
 
 /// Name of the contact sheet (PNG) beside a plant file.
-std::string pictureFile(const std::string& plant_file);
+std::string imageFile(const std::string& plant_file);
 
 std::string number(double value, const char* format = "%.7g");
 std::string list(const std::vector<double>& values);

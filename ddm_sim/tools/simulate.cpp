@@ -1,7 +1,7 @@
 // simulate: reads torques, simulates a plant without a ROS master, and writes the trajectory.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_common/image_codec.h>
-#include <ddm_plant_plugin/picture_message.h>
+#include <ddm_plant_plugin/image_message.h>
 #include <ddm_plant_plugin/plant_config.h>
 #include <ros/package.h>
 
@@ -101,8 +101,8 @@ std::shared_ptr<const PlantPlugin> configuredPlant(const Arguments& arguments) {
 void writeFrame(const Plant& plant, const std::string& folder, std::size_t row) {
   char name[32];
   std::snprintf(name, sizeof(name), "frame_%04zu.png", row);
-  writePicture((fs::path(folder) / name).string(),
-               imageMessage(plant.render(plant.state()), ros::Time()));
+  writeImageFile((fs::path(folder) / name).string(),
+                 imageMessage(plant.render(plant.state()), ros::Time()));
 }
 
 /// @param reward  empty: the plant has no reward

@@ -220,18 +220,18 @@ GpFit trainGp(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets, int
       };
       return minimise(objective, from.col(a), solver);
     };
-    Minimum minimum = trainFrom(start.size() > 0 ? start : initial);
-    if (minimum.reason == MinimumReason::kStartFailed && start.size() > 0) {
+    SolverResult result = trainFrom(start.size() > 0 ? start : initial);
+    if (result.reason == TerminationReason::kStartFailed && start.size() > 0) {
       say("the previous hyper-parameters cannot be evaluated, trained anew");
-      minimum = trainFrom(initial);
+      result = trainFrom(initial);
     }
-    if (minimum.reason == MinimumReason::kStartFailed) {
+    if (result.reason == TerminationReason::kStartFailed) {
       say("the likelihood cannot be evaluated at the start of the training");
       return training;
     }
-    training.outputs.push_back(minimum);
-    if (!minimum.improved() && !minimum.converged()) say("kept at the start, " + minimum.message);
-    trained.col(a) = minimum.x;
+    training.outputs.push_back(result);
+    if (!result.improved() && !result.converged()) say("kept at the start, " + result.message);
+    trained.col(a) = result.x;
   }
   training.add(makeGpModel(inputs, targets, trained));
   return training;

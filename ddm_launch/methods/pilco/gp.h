@@ -40,9 +40,9 @@ struct GpModel {
 
 /// Result of a training: the GPs, or the reason why the training failed.
 struct GpFit {
-  GpModel model;                 ///< empty if the training failed
-  std::vector<Minimum> outputs;  ///< result of each minimisation
-  std::string message;           ///< failure or warning; empty if there is none
+  GpModel model;                      ///< empty if the training failed
+  std::vector<SolverResult> outputs;  ///< result of each minimisation
+  std::string message;                ///< failure or warning; empty if there is none
 
   bool ok() const { return model.numPoints() > 0; }
   void addMessage(const std::string& text);

@@ -83,7 +83,7 @@ class TrueStateObservation : public Observation {
   void startTrial(const TrialId& id) override {
     noise_ = randomStream(id, StreamRole::kMeasurement);
   }
-  Eigen::VectorXd observe(const Grey& /*grey*/) override { return measure(plant_.state()); }
+  Eigen::VectorXd observe(const Image& /*image*/) override { return measure(plant_.state()); }
 
  private:
   PilcoTask task() const {
@@ -141,7 +141,7 @@ class FeatureObservation : public Observation {
   std::map<std::string, std::string> files() const override {
     return {{kModelFile, serialiseModel(*model_)}};
   }
-  Eigen::VectorXd observe(const Grey& grey) override { return model_->encode(grey); }
+  Eigen::VectorXd observe(const Image& image) override { return model_->encode(image); }
 
  private:
   ObservedData observeAll(const DataSet& data) const {
@@ -170,7 +170,7 @@ class PcaObservation : public Observation {
     const Eigen::MatrixXd Z = pca.project(data).leftCols(data.numFrames()).cast<double>();
     return {Z, imageTask(Z, data.segments(), observe(data.goal()))};
   }
-  Eigen::VectorXd observe(const Grey& grey) override { return projection_(grey); }
+  Eigen::VectorXd observe(const Image& image) override { return projection_(image); }
 
  private:
   ModelOptions options_;

@@ -116,7 +116,7 @@ class PilcoPolicy : public Policy {
         features_(std::move(features)) {}
 
   void startTrial(const TrialId& id) override { observation_->startTrial(id); }
-  void observe(const Grey& grey) override { x_ = observation_->observe(grey); }
+  void observe(const Image& image) override { x_ = observation_->observe(image); }
   /// The torque is 0 if the policy's result is not finite.
   Answer answer() override {
     const Clock::time_point start = Clock::now();
@@ -277,13 +277,13 @@ class PilcoMethod : public Method {
           },
           parameters, solver);
     };
-    Minimum result = search();
-    const bool afresh = result.reason == MinimumReason::kStartFailed;
+    SolverResult result = search();
+    const bool afresh = result.reason == TerminationReason::kStartFailed;
     if (afresh) {
       parameters = drawStart();
       result = search();
     }
-    const bool failed = result.reason == MinimumReason::kStartFailed;
+    const bool failed = result.reason == TerminationReason::kStartFailed;
     if (failed) {  // the next trial adds data, which may help
       result.message = "a first policy is kept, since its cost is not finite either";
     }

@@ -66,9 +66,9 @@ class Observation {
   virtual void startTrial(const TrialId& /*id*/) {}
 
   /// Computes the state from the current image. Must be called for each sample of a trial in turn.
-  /// @param grey  latest image
+  /// @param image  latest image
   /// @return      x
-  virtual Eigen::VectorXd observe(const Grey& grey) = 0;
+  virtual Eigen::VectorXd observe(const Image& image) = 0;
 };
 
 /// x = (rate, angle) + noise of a pendulum; the angle is not wrapped. Only this observation gives a

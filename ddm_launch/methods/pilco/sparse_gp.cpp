@@ -168,14 +168,14 @@ GpFit trainSparseGp(const Eigen::MatrixXd& start, const Eigen::MatrixXd& inputs,
   solver.max_evaluations = kEvaluationsPerIteration * max_iterations;
   solver.function_tolerance = 1e-9;
   solver.gradient_tolerance = 1e-5;
-  const Minimum minimum =
+  const SolverResult result =
       minimise(cost, Eigen::Map<const Eigen::VectorXd>(start.data(), start.size()), solver);
   const Eigen::MatrixXd inducing =
-      Eigen::Map<const Eigen::MatrixXd>(minimum.x.data(), start.rows(), start.cols());
+      Eigen::Map<const Eigen::MatrixXd>(result.x.data(), start.rows(), start.cols());
   GpFit fit = makeSparseGpModel(inducing, inputs, targets, hyperparameters);
-  fit.outputs.push_back(minimum);
-  if (fit.ok() && !minimum.improved() && !minimum.converged()) {
-    fit.message = "inducing inputs kept at the start, " + minimum.message;
+  fit.outputs.push_back(result);
+  if (fit.ok() && !result.improved() && !result.converged()) {
+    fit.message = "inducing inputs kept at the start, " + result.message;
   }
   return fit;
 }

@@ -46,8 +46,8 @@ sensor_msgs::Image imageOf(const BagMessage& message, std::string* encoding) {
 
 /// The decoded images of a bag.
 struct BagImages {
-  std::vector<Grey> greys;          ///< of the samples; empty: the image cannot be decoded
-  Grey goal;                        ///< empty: there is no goal image
+  std::vector<Image> greys;         ///< of the samples; empty: the image cannot be decoded
+  Image goal;                       ///< empty: there is no goal image
   std::string camera;               ///< see BagContent
   std::vector<std::string> faults;  ///< of the images that cannot be decoded
 };
@@ -94,7 +94,7 @@ BagImages decodeImages(BagFile* bag, const BagTopics& topics, const Pairs& pairs
 }
 
 /// @return hash of time, image and torque of a sample
-std::size_t idOf(const Grey& grey, const Pairs::Frame& frame) {
+std::size_t idOf(const Image& grey, const Pairs::Frame& frame) {
   std::string bytes(grey.begin(), grey.end());
   bytes.append(reinterpret_cast<const char*>(frame.torque.data()),
                frame.torque.size() * sizeof(double));
@@ -112,7 +112,7 @@ BagContent contentOf(const Pairs& pairs, const BagImages& images, int image_size
   int darkest = 255, brightest = 0;
   for (std::size_t i = 0; i < images.greys.size(); ++i) {
     const Pairs::Frame& frame = pairs.frames[i];
-    const Grey& grey = images.greys[i];
+    const Image& grey = images.greys[i];
     new_segment = new_segment || frame.new_segment || grey.empty();
     if (grey.empty()) continue;
     const auto range = std::minmax_element(grey.begin(), grey.end());
@@ -177,7 +177,7 @@ std::vector<std::string> BagOptions::problems() const {
   return data_set.problems();
 }
 
-Grey greyOf(const sensor_msgs::Image& image, int image_size, const BagOptions& options) {
+Image greyOf(const sensor_msgs::Image& image, int image_size, const BagOptions& options) {
   const auto size = static_cast<std::uint32_t>(image_size);
   const bool done = image.width == size && image.height == size;  // and needs no crop
   const std::vector<int>& crop = options.crop;

@@ -10,9 +10,9 @@
 namespace ddm {
 
 /// Grey values k of one image, row by row from the top left. The paper's y is k / 255.  [D]
-using Grey = std::vector<std::uint8_t>;
+using Image = std::vector<std::uint8_t>;
 /// Grey values of several images, one image per column.  [D x N]
-using GreyMatrix = Eigen::Matrix<std::uint8_t, Eigen::Dynamic, Eigen::Dynamic>;
+using ImageMatrix = Eigen::Matrix<std::uint8_t, Eigen::Dynamic, Eigen::Dynamic>;
 
 /// Samples without a gap between them: sample i+1 follows sample i by one sampling time.
 struct Segment {
@@ -31,12 +31,12 @@ class DataSet {
   DataSet(int image_size, int torque_dim);
 
   /// Appends a sample.
-  /// @param grey       image y_t                                                            [D]
+  /// @param image       image y_t                                                            [D]
   /// @param torque     u_t [N m]                                                    [torque_dim]
   /// @param new_segment  true if the previous sample is not one sampling time earlier: at the first
   ///                   sample of a trial and after a gap. No training pair spans such a boundary
   /// @throws std::invalid_argument for a wrong size or a torque that is not finite
-  void append(const Grey& grey, const Eigen::VectorXd& torque, bool new_segment);
+  void append(const Image& image, const Eigen::VectorXd& torque, bool new_segment);
 
   /// Appends all samples of another data set. No training pair spans the boundary between the two
   /// data sets. If the other data set has a goal image, it replaces the goal image of this one.
@@ -45,9 +45,9 @@ class DataSet {
 
   /// Sets the goal image y_ref (paper, Sec. 3.1), which is also training data of the auto-encoder.
   /// @throws std::invalid_argument for a wrong size
-  void setGoal(const Grey& grey);
+  void setGoal(const Image& image);
   bool hasGoal() const { return !goal_.empty(); }
-  const Grey& goal() const { return goal_; }
+  const Image& goal() const { return goal_; }
 
   int imageSize() const { return image_size_; }
   int torqueDim() const { return torque_dim_; }
@@ -58,12 +58,12 @@ class DataSet {
   /// @return number of samples, plus one if there is a goal image
   Eigen::Index numImages() const { return num_frames_ + (hasGoal() ? 1 : 0); }
   /// @return the image of sample `number`, or the goal image if number = numFrames()
-  const Grey& image(Eigen::Index number) const {
+  const Image& image(Eigen::Index number) const {
     return number < num_frames_ ? *images_[number] : goal_;
   }
   /// Copies the images begin ... begin + size - 1 into columns. Meant for blocks of a few images.
   /// @return [D x size]
-  GreyMatrix pixels(Eigen::Index begin, Eigen::Index size) const;
+  ImageMatrix pixels(Eigen::Index begin, Eigen::Index size) const;
   /// @return torques of all samples [N m]  [torque_dim x numFrames()]
   Eigen::Map<const Eigen::MatrixXd> torques() const;
 
@@ -71,10 +71,10 @@ class DataSet {
   int image_size_;
   int torque_dim_;
   Eigen::Index num_frames_ = 0;
-  std::vector<std::shared_ptr<const Grey>> images_;
+  std::vector<std::shared_ptr<const Image>> images_;
   std::vector<double> torques_;
   std::vector<Segment> segments_;
-  Grey goal_;
+  Image goal_;
 };
 
 }  // namespace ddm

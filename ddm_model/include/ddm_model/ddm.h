@@ -38,19 +38,19 @@ class Ddm {
   /// @param goal        goal image, empty if there is none                         [D]
   /// @throws std::invalid_argument if sizes do not fit together or a number is not finite
   Ddm(ModelOptions options, int image_size, int torque_dim, Pca pca, Eigen::VectorXd theta,
-      Grey goal, ModelInfo info);
+      Image goal, ModelInfo info);
 
   /// Encodes an image: z = g^-1(y) (paper, eq. 3a).
-  /// @param grey  image  [D]
+  /// @param image  image  [D]
   /// @return      z      [feature_dim]
   /// @throws std::invalid_argument for a wrong number of pixels
-  Eigen::VectorXd encode(const Grey& grey) const;
+  Eigen::VectorXd encode(const Image& image) const;
 
   /// Decodes a feature: y_hat = g(z) (paper, eq. 3b), clamped to the grey values 0 ... 255.
   /// @param z  [feature_dim]
   /// @return   image  [D]
   /// @pre z has feature_dim entries (checked by eigen_assert, i.e. in debug builds only)
-  Grey decode(const Eigen::VectorXd& z) const;
+  Image decode(const Eigen::VectorXd& z) const;
 
   /// z_ref, the feature of the goal image.
   /// @throws std::logic_error if the model has no goal image
@@ -83,7 +83,7 @@ class Ddm {
   const ModelInfo& info() const { return info_; }
   const Pca& pca() const { return pca_; }
   const Eigen::VectorXd& theta() const { return theta_; }
-  const Grey& goal() const { return goal_; }
+  const Image& goal() const { return goal_; }
   int imageSize() const { return image_size_; }
   int torqueDim() const { return networks_.prediction_model.torqueDim(); }
   int featureDim() const { return options_.feature_dim; }
@@ -95,7 +95,7 @@ class Ddm {
   Pca pca_;
   Projection projection_;
   Eigen::VectorXd theta_;
-  Grey goal_;
+  Image goal_;
   ModelInfo info_;
   Eigen::VectorXd goal_feature_;
 };

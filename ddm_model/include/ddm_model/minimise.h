@@ -15,7 +15,7 @@ using DifferentiableFunction =
     std::function<double(const Eigen::VectorXd& x, Eigen::VectorXd* gradient)>;
 
 /// Why a minimisation ended.
-enum class MinimumReason {
+enum class TerminationReason {
   /// The gradient vanishes, or an iteration hardly changes a cost that the search has lowered.
   kConverged,
   kIterationLimit,   ///< max_iterations is reached
@@ -26,8 +26,8 @@ enum class MinimumReason {
 };
 
 /// Result of a minimisation: the best evaluated point, and why the search ended.
-struct Minimum {
-  MinimumReason reason = MinimumReason::kStartFailed;
+struct SolverResult {
+  TerminationReason reason = TerminationReason::kStartFailed;
   std::string message;       ///< the reason in words
   Eigen::VectorXd x;         ///< best evaluated point; the initial point if there is none  [n]
   Eigen::VectorXd gradient;  ///< gradient at x; empty if no point was evaluated  [n]
@@ -36,7 +36,7 @@ struct Minimum {
   int iterations = 0;                                             ///< number of line searches
   int evaluations = 0;  ///< number of evaluations of the function
 
-  bool converged() const { return reason == MinimumReason::kConverged; }
+  bool converged() const { return reason == TerminationReason::kConverged; }
   bool improved() const { return cost < initial_cost; }
 };
 
@@ -54,7 +54,7 @@ struct MinimiseOptions {
   std::function<bool()> stop;
   /// Called with the best point so far, before the first iteration and after each iteration.
   /// Returning false ends the search.
-  std::function<bool(const Minimum& so_far)> on_iteration;
+  std::function<bool(const SolverResult& so_far)> on_iteration;
 };
 
 /// Minimises f from an initial point (BFGS: paper, Secs. 2.3 and 3.1). The line search shortens a
@@ -63,8 +63,8 @@ struct MinimiseOptions {
 /// @param start  initial point  [n]
 /// @throws std::invalid_argument if the initial point is empty or not finite, or if a limit is
 ///         negative; also every exception of f, stop and on_iteration
-Minimum minimise(const DifferentiableFunction& f, const Eigen::VectorXd& start,
-                 const MinimiseOptions& options);
+SolverResult minimise(const DifferentiableFunction& f, const Eigen::VectorXd& start,
+                      const MinimiseOptions& options);
 
 /// Silences the log of Ceres, which warns on stderr about line searches over flat functions
 /// although each result already says how the search ended. Only programs call this function, once;

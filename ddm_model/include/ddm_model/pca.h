@@ -66,7 +66,7 @@ struct Pca {
 
   /// @param pixels  grey values k of N images      [D x N]
   /// @return        scores [-]                     [pca_dim x N]
-  Eigen::MatrixXf project(const Eigen::Ref<const GreyMatrix>& pixels) const;
+  Eigen::MatrixXf project(const Eigen::Ref<const ImageMatrix>& pixels) const;
 
   /// Projects all images of a data set, the goal image last, in blocks of a few hundred images.
   /// @return        scores [-]                     [pca_dim x data.numImages()]
@@ -84,9 +84,9 @@ class Projection {
   Projection() = default;  ///< invalid until a projection is assigned
   explicit Projection(const Pca& pca);
 
-  /// @param grey  grey values k  [D]
+  /// @param image  grey values k [D]
   /// @return      scores [-]     [pca_dim]
-  Eigen::VectorXd operator()(const Grey& grey) const;
+  Eigen::VectorXd operator()(const Image& image) const;
 
  private:
   Eigen::MatrixXd filters_;  ///< scale / 255 (blurred basis)^T  [pca_dim x D]

@@ -63,7 +63,7 @@ def figures_of(data):
                "Images, what the principal components keep of them after model/blur, and what the features keep.")
         for kind, prediction in data.predictions.items():
             yield ("A prediction: %s" % kind, report_figures.draw_prediction(data, prediction),
-                   "Steps ahead above each picture. By error, this prediction is %s of all; only the first picture was seen, "
+                   "Steps ahead above each image. By error, this prediction is %s of all; only the first image was seen, "
                    "and the torques." % {"typical": "the median", "worst": "the worst"}[kind])
         if len(data.errors["steps"]) > 0:
             yield ("Error by step", report_figures.draw_errors(data),

@@ -40,7 +40,7 @@ class MpcPolicy : public Policy {
   void startTrial(const TrialId& id) override;
   void startSegment() override;
   void setExploring(bool exploring) override { exploring_ = exploring; }
-  void setGoal(const Grey& goal) override { z_ref_ = model_->encode(goal); }
+  void setGoal(const Image& goal) override { z_ref_ = model_->encode(goal); }
   bool hasGoal() const { return z_ref_.size() > 0; }
 
   /// Computes the cost-to-go of the goal if it is not yet computed, which takes up to two seconds
@@ -56,7 +56,7 @@ class MpcPolicy : public Policy {
   /// Sets a condition that ends the search for a plan; evaluations of the cost check it.
   void setStop(std::function<bool()> stop) { stop_ = std::move(stop); }
 
-  void observe(const Grey& grey) override;
+  void observe(const Image& image) override;
   /// @return |z - z_ref| in units of the spread of the features; empty if the model has no valid
   ///         spread or there is no goal
   std::optional<double> goalDistance() const override;
@@ -111,7 +111,7 @@ class EpsilonGreedy {
   EpsilonGreedy(std::shared_ptr<Policy> policy, const Options& options, const TrialId& id);
 
   /// See Policy::setGoal().
-  void setGoal(const Grey& goal);
+  void setGoal(const Image& goal);
 
   /// Replaces the last decided torque in the controller state by the torque that acted instead.
   /// Call it before the next decide().
@@ -123,9 +123,9 @@ class EpsilonGreedy {
   void startSegment();
 
   /// Performs one step of Algorithm 1 of the paper.
-  /// @param grey  the newest image  [D]
+  /// @param image  the newest image  [D]
   /// @throws std::invalid_argument for a wrong number of pixels
-  Decision decide(const Grey& grey);
+  Decision decide(const Image& image);
 
  private:
   void drawTorque();

@@ -42,7 +42,7 @@ class Policy {
   /// Sets a new goal from the next answer on, in place of the goal image of the data. A policy
   /// ignores it if it has learned to reach one goal, or if it reads the true goal from the plant.
   /// @throws std::invalid_argument for a wrong number of pixels
-  virtual void setGoal(const Grey& /*goal*/) {}
+  virtual void setGoal(const Image& /*goal*/) {}
 
   /// Begins a new segment: the next image does not follow the last one by one time step, or no
   /// single torque acted between them. As in training, no controller state may then contain both
@@ -54,7 +54,7 @@ class Policy {
 
   /// Adds the newest image.
   /// @throws std::invalid_argument for a wrong number of pixels
-  virtual void observe(const Grey& grey) = 0;
+  virtual void observe(const Image& image) = 0;
 
   /// @return distance of the last image to the goal, in units that are comparable between models.
   ///         Empty if the policy has no such distance

@@ -270,7 +270,7 @@ sensor_msgs::Image encodeImage(const std::vector<std::uint8_t>& grey, int size,
   return image;
 }
 
-sensor_msgs::Image readPicture(const std::string& path) {
+sensor_msgs::Image readImageFile(const std::string& path) {
   const cv::Mat grey = cv::imread(path, cv::IMREAD_GRAYSCALE);
   if (grey.empty()) {
     throw std::invalid_argument(path + " cannot be read as an image: give a PNG or PGM file");
@@ -278,7 +278,7 @@ sensor_msgs::Image readPicture(const std::string& path) {
   return *cv_bridge::CvImage(std_msgs::Header(), "mono8", grey).toImageMsg();
 }
 
-void writePicture(const std::string& path, const sensor_msgs::Image& image) {
+void writeImageFile(const std::string& path, const sensor_msgs::Image& image) {
   // OpenCV writes colours in the order blue, green, red.
   const char* encoding = image.encoding == "mono8" ? "mono8" : "bgr8";
   std::vector<std::uint8_t> bytes;

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "ddm_sim/picture.h"
+#include "ddm_sim/rendered_image.h"
 
 namespace ddm {
 
@@ -42,7 +42,7 @@ struct CameraOptions {
 ///   b_t = 1 + brightness_drift sin(2 pi t dt / 20 s + phase),   n ~ N(0, 1)
 ///
 /// for each value of each pixel. c is a background of grey shapes, the same in all episodes of all
-/// experiments. a is the share of the pixel that the plant covers (Picture::cover), so the plant
+/// experiments. a is the share of the pixel that the plant covers (RenderedImage::cover), so the plant
 /// hides the background. The phase is drawn uniformly for each episode. With probability drop_rate
 /// the image is lost; all other images are delivered `delay` time steps after they were taken. With
 /// all options at 0, y equals p byte for byte.
@@ -58,7 +58,7 @@ class Camera {
   /// @throws std::invalid_argument with all problems of the options
   Camera(const CameraOptions& options, double dt);
 
-  /// Begins an episode: the next call of photograph() takes its first image.
+  /// Begins an episode: the next call of capture() takes its first image.
   /// @param seed        seed of the experiment
   /// @param trial       number of the episode, see TrialId::trial
   /// @param evaluation  true for the evaluation (greedy episode) that follows `trial`
@@ -68,16 +68,16 @@ class Camera {
   /// The first `delay` calls of an episode return its first image. Call this function exactly once
   /// in each time step.
   /// @return the image, or nothing if it is lost; the first image of an episode is never lost
-  /// @throws std::invalid_argument if clutter is > 0 and `picture` has no cover
-  std::optional<Picture> photograph(const Picture& picture);
+  /// @throws std::invalid_argument if clutter is > 0 and `rendered` has no cover
+  std::optional<RenderedImage> capture(const RenderedImage& rendered);
 
   /// Takes the goal image: at nominal brightness and with a fixed draw of the noise, so that equal
   /// goals give equal images in all episodes of all experiments.
-  /// @throws std::invalid_argument as photograph()
-  Picture photographGoal(const Picture& picture);
+  /// @throws std::invalid_argument as capture()
+  RenderedImage captureGoal(const RenderedImage& rendered);
 
  private:
-  Picture expose(const Picture& picture, double brightness, std::mt19937_64* noise);
+  RenderedImage expose(const RenderedImage& rendered, double brightness, std::mt19937_64* noise);
 
   CameraOptions options_;
   double dt_;
@@ -86,7 +86,7 @@ class Camera {
   std::mt19937_64 noise_;
   double phase_ = 0.0;  ///< phase of the brightness [rad]
   /// The image on show, then the images that wait for their delay.
-  std::deque<std::optional<Picture>> taken_;
+  std::deque<std::optional<RenderedImage>> taken_;
   int frame_ = 0;  ///< t of the next image
 };
 

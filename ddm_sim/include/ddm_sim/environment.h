@@ -33,8 +33,8 @@ class Environment {
   ///         drawn
   /// @throws std::invalid_argument if `start` is not a state or the goal is out of reach; the
   ///         environment is then unchanged
-  Picture reset(std::uint64_t seed, std::uint32_t trial, bool evaluation,
-                const std::optional<Eigen::VectorXd>& start = {}) {
+  RenderedImage reset(std::uint64_t seed, std::uint32_t trial, bool evaluation,
+                      const std::optional<Eigen::VectorXd>& start = {}) {
     const Eigen::VectorXd goal = goalOf(*plant_, seed, trial, evaluation);
     std::mt19937_64 starts = startStream(seed, trial, evaluation);
     plant_->setState(start ? *start : plant_->drawStart(starts));
@@ -42,13 +42,13 @@ class Environment {
     camera_.begin(seed, trial, evaluation);
     num_steps_ = 0;
     applied_.setZero();
-    return *camera_.photograph(plant_->render(plant_->state()));
+    return *camera_.capture(plant_->render(plant_->state()));
   }
 
   /// Moves the plant by one time step under a constant torque.
   /// @return the image that the camera delivers now, or nothing if that image is lost
   /// @throws as Plant::step(); the environment is then unchanged
-  std::optional<Picture> step(const Eigen::VectorXd& torque) {
+  std::optional<RenderedImage> step(const Eigen::VectorXd& torque) {
     try {
       applied_ = plant_->step(torque);
     } catch (const std::range_error& e) {
@@ -56,19 +56,19 @@ class Environment {
                              " since the reset)");
     }
     ++num_steps_;
-    return camera_.photograph(plant_->render(plant_->state()));
+    return camera_.capture(plant_->render(plant_->state()));
   }
 
   /// Repeats step() with the same torque until the camera delivers an image.
   /// @throws as Plant::step(); the steps before the failing one stay done
-  Picture stepUntilSeen(const Eigen::VectorXd& torque) {
+  RenderedImage stepUntilSeen(const Eigen::VectorXd& torque) {
     for (;;) {
-      if (std::optional<Picture> picture = step(torque)) return *std::move(picture);
+      if (std::optional<RenderedImage> rendered = step(torque)) return *std::move(rendered);
     }
   }
 
   /// The goal image of this episode, as the camera takes it.
-  Picture goalImage() { return camera_.photographGoal(plant_->render(plant_->goal())); }
+  RenderedImage goalImage() { return camera_.captureGoal(plant_->render(plant_->goal())); }
 
   const Plant& plant() const { return *plant_; }
   std::uint64_t numSteps() const { return num_steps_; }  ///< time steps since the reset

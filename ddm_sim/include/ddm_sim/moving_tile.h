@@ -33,7 +33,7 @@ struct MovingTileOptions : PlantOptions {
 /// Deviation: the paper does not describe its renderer; this one is our choice.
 /// @param size    width and height of the image, >= 1 [pixels]
 /// @param centre  (x, y), x to the right and y downwards [pixels], finite                   [2 x 1]
-Picture drawTile(int size, const Eigen::Vector2d& centre);
+RenderedImage drawTile(int size, const Eigen::Vector2d& centre);
 
 /// A tile with the state (x, y), the position of its centre in the image [pixels], and two inputs.
 ///
@@ -60,7 +60,7 @@ class MovingTile : public Plant {
   Eigen::VectorXd advance(const Eigen::VectorXd& state,
                           const Eigen::VectorXd& torque) const override;
   double distance(const Eigen::VectorXd& state, const Eigen::VectorXd& goal) const override;
-  Picture draw(const Eigen::VectorXd& state) const override;
+  RenderedImage draw(const Eigen::VectorXd& state) const override;
   Eigen::VectorXd locate(const Eigen::VectorXd& state) const override { return state; }
 
   int size_;  ///< width and height of the image [pixels]

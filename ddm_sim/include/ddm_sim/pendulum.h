@@ -61,7 +61,7 @@ class Pendulum : public Plant {
   Eigen::VectorXd advance(const Eigen::VectorXd& state,
                           const Eigen::VectorXd& torque) const override;
   double distance(const Eigen::VectorXd& state, const Eigen::VectorXd& goal) const override;
-  Picture draw(const Eigen::VectorXd& state) const override;
+  RenderedImage draw(const Eigen::VectorXd& state) const override;
 
   /// Position of the tip of the rod, l (sin phi, -cos phi): x to the right, y upwards from the
   /// pivot [m].

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "ddm_sim/picture.h"
+#include "ddm_sim/rendered_image.h"
 
 namespace ddm {
 
@@ -136,7 +136,7 @@ class Plant {
   /// Renders the image of `state` without any disturbance. The size is always the same.
   /// @throws std::invalid_argument as setState()
   /// @throws std::logic_error if draw() returns a number of bytes that does not match its size
-  Picture render(const Eigen::VectorXd& state) const;
+  RenderedImage render(const Eigen::VectorXd& state) const;
 
   /// The camera of render(). Empty if the renderer has no pinhole model.
   virtual std::optional<CameraModel> cameraModel() const { return std::nullopt; }
@@ -147,7 +147,7 @@ class Plant {
   /// Renders a large image of `state` for people. Only plants with a viewModel() have one.
   /// @throws std::invalid_argument as setState()
   /// @throws std::logic_error if the plant has no view
-  virtual Picture view(const Eigen::VectorXd& state) const;
+  virtual RenderedImage view(const Eigen::VectorXd& state) const;
 
   /// Positions of the moving parts in the image: the part of `state` that a single image shows. The
   /// plant defines origin, directions and unit: the pendulum returns the tip of its rod [m].
@@ -172,7 +172,7 @@ class Plant {
   virtual double distance(const Eigen::VectorXd& state, const Eigen::VectorXd& goal) const = 0;
 
   /// The image of `state`, see render().
-  virtual Picture draw(const Eigen::VectorXd& state) const = 0;
+  virtual RenderedImage draw(const Eigen::VectorXd& state) const = 0;
 
   /// The positions of the moving parts, see visiblePosition().
   virtual Eigen::VectorXd locate(const Eigen::VectorXd& state) const = 0;

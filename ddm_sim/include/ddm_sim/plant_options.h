@@ -21,7 +21,7 @@ struct PlantOptions {
   double dt = 0.2;                         ///< time step, over which u is constant [s]
   /// Standard deviation of each component of the initial state.
   std::vector<double> start_std = {0.1};
-  int picture_size = 51;  ///< width and height of the rendered image [pixels]
+  int image_size = 51;  ///< width and height of the rendered image [pixels]
 
   template <class Visitor>
   void visit(Visitor& visitor) {
@@ -29,7 +29,7 @@ struct PlantOptions {
     visitor("max_torque", max_torque);
     visitor("dt", dt);
     visitor("start_std", start_std);
-    visitor("picture_size", picture_size);
+    visitor("image_size", image_size);
   }
 
   /// Describes each invalid value and the rule that it breaks. Empty if all values are valid.
@@ -45,7 +45,7 @@ struct PlantOptions {
     // millisecond.
     plant.requireWithin("dt", dt, 1e-3, 10.0);
     each(start_std, "start_std", "be >= 0 and finite", isNotNegative);
-    plant.requireWithin("picture_size", picture_size, 4, 1024);
+    plant.requireWithin("image_size", image_size, 4, 1024);
     return plant.problems();
   }
 };

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "ddm_sim/picture.h"
+#include "ddm_sim/rendered_image.h"
 
 namespace ddm {
 
@@ -55,7 +55,7 @@ class RodRenderer {
   RodRenderer(int size, const RodLook& look);
 
   /// @param rods  at least one rod; all values finite
-  Picture render(const std::vector<Rod>& rods) const;
+  RenderedImage render(const std::vector<Rod>& rods) const;
 
  private:
   int size_;

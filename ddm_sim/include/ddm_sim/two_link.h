@@ -58,7 +58,7 @@ class TwoLink : public Plant {
   Eigen::VectorXd advance(const Eigen::VectorXd& state,
                           const Eigen::VectorXd& torque) const override;
   double distance(const Eigen::VectorXd& state, const Eigen::VectorXd& goal) const override;
-  Picture draw(const Eigen::VectorXd& state) const override;
+  RenderedImage draw(const Eigen::VectorXd& state) const override;
 
   /// Positions (x, y) of elbow and tip: x to the right and y upwards from the shoulder [m]. [4 x 1]
   Eigen::VectorXd locate(const Eigen::VectorXd& state) const override;

@@ -155,10 +155,11 @@ double changeOfImages(const MujocoModel& model, const Mechanism& mechanism,
   Renderer renderer(model.share(), look);
   Eigen::ArrayXd sum, squares;
   for (int i = 0; i < kPoses; ++i) {
-    const Picture picture = renderer.draw(mechanism.place(poses[static_cast<std::size_t>(i)]));
+    const RenderedImage rendered =
+        renderer.draw(mechanism.place(poses[static_cast<std::size_t>(i)]));
     const Eigen::ArrayXd pixels =
         Eigen::Map<const Eigen::Array<std::uint8_t, Eigen::Dynamic, 1>>(
-            picture.bytes.data(), static_cast<Eigen::Index>(picture.bytes.size()))
+            rendered.bytes.data(), static_cast<Eigen::Index>(rendered.bytes.size()))
             .cast<double>();
     sum = i == 0 ? pixels : (sum + pixels).eval();
     squares = i == 0 ? pixels.square().eval() : (squares + pixels.square()).eval();

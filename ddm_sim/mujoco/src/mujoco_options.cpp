@@ -11,7 +11,7 @@
 namespace ddm {
 namespace {
 
-void checkLook(const RenderOptions& look, int picture_size, OptionChecks* plant) {
+void checkLook(const RenderOptions& look, int image_size, OptionChecks* plant) {
   // Side of the drawn image, which needs 1 GB of memory with samples [pixels]
   constexpr int kMaxSize = 4096;
   const auto requirePoint = [plant](const std::string& key, const std::vector<double>& point) {
@@ -31,9 +31,9 @@ void checkLook(const RenderOptions& look, int picture_size, OptionChecks* plant)
                  "be left out where camera_position is given", look.camera);
   plant->require(look.samples == 0 || look.samples == 4, "samples", "be 0 or 4", look.samples);
   plant->requireWithin("supersampling", look.supersampling, 1, 8);
-  const int size = picture_size * look.supersampling;
+  const int size = image_size * look.supersampling;
   plant->require(size <= kMaxSize, "supersampling",
-                 "times picture_size be at most " + std::to_string(kMaxSize) + " pixels", size);
+                 "times image_size be at most " + std::to_string(kMaxSize) + " pixels", size);
   plant->requireWithin("camera_shift", look.camera_shift, 0.0, 1.0);
   plant->requireWithin("colour_shift", look.colour_shift, 0.0, 1.0);
 }
@@ -69,7 +69,7 @@ std::vector<std::string> MujocoOptions::problems() const {
   plant.require(reward.empty() || std::count(names.begin(), names.end(), reward) > 0, "reward",
                 "be empty or one of those that there are",
                 reward + ": " + suggestion(reward, names));
-  checkLook(look, picture_size, &plant);
+  checkLook(look, image_size, &plant);
   return plant.problems();
 }
 

@@ -153,7 +153,7 @@ std::vector<Place> places(const MujocoModel& model, const std::vector<std::strin
 
 RenderOptions imageLook(const MujocoOptions& options) {
   RenderOptions look = options.look;
-  look.width = look.height = options.picture_size;
+  look.width = look.height = options.image_size;
   return look;
 }
 
@@ -269,7 +269,7 @@ double MujocoPlant::distance(const Eigen::VectorXd& state, const Eigen::VectorXd
   return error;
 }
 
-Picture MujocoPlant::draw(const Eigen::VectorXd& state) const {
+RenderedImage MujocoPlant::draw(const Eigen::VectorXd& state) const {
   return image_->draw(physics_->placed(state));
 }
 
@@ -281,7 +281,7 @@ std::optional<CameraModel> MujocoPlant::viewModel() const {
   return view_->camera(physics_->placed(state()));
 }
 
-Picture MujocoPlant::view(const Eigen::VectorXd& state) const {
+RenderedImage MujocoPlant::view(const Eigen::VectorXd& state) const {
   if (goal_site_.empty()) return view_->draw(physics_->placed(state));
   const Eigen::Vector2d target = physics_->places(goal_site_, goal()).head(2);
   return view_->draw(physics_->placed(state, target));

@@ -17,7 +17,7 @@ namespace {
 using Eigen::VectorXd;
 
 /// Number of pixels that differ by at least `levels` grey levels.
-int numDifferent(const Picture& a, const Picture& b, int levels) {
+int numDifferent(const RenderedImage& a, const RenderedImage& b, int levels) {
   int count = 0;
   for (std::size_t i = 0; i < a.bytes.size(); ++i) {
     count += std::abs(a.bytes[i] - b.bytes[i]) >= levels ? 1 : 0;
@@ -33,7 +33,7 @@ std::string point(const Eigen::Vector3d& at) {
 }
 
 /// Likely cause of images that do not change.
-std::string whyUnseen(const mjModel& model, const Picture& picture) {
+std::string whyUnseen(const mjModel& model, const RenderedImage& rendered) {
   int moving = 0, drawn = 0;
   for (int i = 0; i < model.ngeom; ++i) {
     moving += model.body_weldid[model.geom_bodyid[i]] != 0 ? 1 : 0;
@@ -44,7 +44,7 @@ std::string whyUnseen(const mjModel& model, const Picture& picture) {
   }
   if (drawn == 0)
     return "all shapes that move are transparent; give them an opacity (rgba) above 0";
-  const auto ends = std::minmax_element(picture.bytes.begin(), picture.bytes.end());
+  const auto ends = std::minmax_element(rendered.bytes.begin(), rendered.bytes.end());
   if (*ends.second < 10) {
     return "they are black; nothing is before the camera, or no light falls on it. Move the camera "
            "(plant/camera_position, plant/camera_look_at), or add a <light>";
@@ -65,7 +65,7 @@ void requireVisible(const std::shared_ptr<const MujocoModel>& model, const Mujoc
   const MujocoPlant plant(model, options);
   const Eigen::VectorXd& start = plant.info().start;
   std::mt19937_64 engine(0);
-  Picture first;
+  RenderedImage first;
   try {
     first = plant.render(start);
     for (int pose = 0; pose < kPoses; ++pose) {

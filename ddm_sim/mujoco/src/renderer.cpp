@@ -84,15 +84,15 @@ mjvCamera placed(const std::vector<double>& position, const std::vector<double>&
 
 /// Averages the colours of an image that is `factor` times larger and upside down, as OpenGL stores
 /// it.
-Picture averaged(const std::vector<std::uint8_t>& drawn, int width, int height, int factor) {
-  Picture picture;
-  picture.width = width;
-  picture.height = height;
-  picture.channels = 3;
-  picture.bytes.resize(picture.numBytes());
+RenderedImage averaged(const std::vector<std::uint8_t>& drawn, int width, int height, int factor) {
+  RenderedImage rendered;
+  rendered.width = width;
+  rendered.height = height;
+  rendered.channels = 3;
+  rendered.bytes.resize(rendered.numBytes());
   const std::size_t row_bytes = std::size_t{3} * static_cast<std::size_t>(width * factor);
   const int count = factor * factor;
-  auto byte = picture.bytes.begin();
+  auto byte = rendered.bytes.begin();
   for (int row = 0; row < height; ++row) {
     const int lowest = (height - 1 - row) * factor;
     for (int column = 0; column < width; ++column) {
@@ -107,7 +107,7 @@ Picture averaged(const std::vector<std::uint8_t>& drawn, int width, int height, 
       }
     }
   }
-  return picture;
+  return rendered;
 }
 
 void requireNoError(const char* what) {
@@ -132,12 +132,12 @@ bool isDrawnAndMoves(const mjModel& model, int geom) {
   return couldBeSeen(model, geom) && (group < kNumShown || group == groupToShow(model));
 }
 
-Picture greyOf(const Picture& picture) {
-  if (picture.channels == 1) return picture;
-  Picture grey = picture;
+RenderedImage greyOf(const RenderedImage& rendered) {
+  if (rendered.channels == 1) return rendered;
+  RenderedImage grey = rendered;
   grey.channels = 1;
   grey.bytes.resize(grey.numBytes());
-  const std::uint8_t* from = picture.bytes.data();
+  const std::uint8_t* from = rendered.bytes.data();
   for (std::uint8_t& byte : grey.bytes) {
     byte = static_cast<std::uint8_t>((9798 * from[0] + 19235 * from[1] + 3735 * from[2] + 16384) >>
                                      15);
@@ -186,7 +186,7 @@ Renderer::~Renderer() {
   mjv_freeScene(&drawn_);
 }
 
-Picture Renderer::draw(const mjData& data) {
+RenderedImage Renderer::draw(const mjData& data) {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (!context_) openContext();
   const EglContext::Current current(*context_);
@@ -197,7 +197,8 @@ Picture Renderer::draw(const mjData& data) {
                  static_cast<std::size_t>(all.height));
   mjr_readPixels(pixels_.data(), nullptr, all, &gpu_);
   requireNoError("drawing");
-  const Picture colour = averaged(pixels_, options_.width, options_.height, options_.supersampling);
+  const RenderedImage colour =
+      averaged(pixels_, options_.width, options_.height, options_.supersampling);
   return options_.colour ? colour : greyOf(colour);
 }
 

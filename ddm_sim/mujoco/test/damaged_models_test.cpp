@@ -102,7 +102,7 @@ int tryPlant(const std::string& plant_file) {
   const std::unique_ptr<Plant> plant = makePlant(*readPlantFiles({plant_file}));
   int brightest = 0;
   for (int t = 0; t < 5; ++t) {
-    const Picture image = plant->render(plant->state());
+    const RenderedImage image = plant->render(plant->state());
     brightest = std::max<int>(brightest, *std::max_element(image.bytes.begin(), image.bytes.end()));
     plant->step(Eigen::VectorXd::Constant(plant->torqueDim(), 0.1));
   }

@@ -128,7 +128,7 @@ TEST(MujocoPlant, ShowsTheTargetToPeopleAlone) {
                                        std::string(group) + "\"/></body></worldbody>"),
                                options);
     const Eigen::VectorXd state = plant->state();
-    const Picture view = plant->view(state), image = plant->render(state);
+    const RenderedImage view = plant->view(state), image = plant->render(state);
     EXPECT_EQ(view.width, 640);
     EXPECT_EQ(plant->viewModel()->height, 480);
     EXPECT_EQ(plant->cameraModel()->width, 51);

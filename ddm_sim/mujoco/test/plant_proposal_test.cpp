@@ -75,12 +75,12 @@ Eigen::Vector3d viewOf(const PlantProposal& proposal) {
 /// Whether the edge of the image shows only the black background, so that the image contains the
 /// whole robot.
 bool showsAll(const MujocoPlant& plant, const Eigen::VectorXd& pose) {
-  const Picture picture = plant.render(pose);
+  const RenderedImage rendered = plant.render(pose);
   int brightest = 0;
-  for (int i = 0; i < picture.width; ++i) {
-    for (const int pixel : {i, (picture.height - 1) * picture.width + i, i * picture.width,
-                            i * picture.width + picture.width - 1}) {
-      brightest = std::max<int>(brightest, picture.bytes[static_cast<std::size_t>(pixel)]);
+  for (int i = 0; i < rendered.width; ++i) {
+    for (const int pixel : {i, (rendered.height - 1) * rendered.width + i, i * rendered.width,
+                            i * rendered.width + rendered.width - 1}) {
+      brightest = std::max<int>(brightest, rendered.bytes[static_cast<std::size_t>(pixel)]);
     }
   }
   return brightest == 0;

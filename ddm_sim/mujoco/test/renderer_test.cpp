@@ -4,7 +4,7 @@
 
 #include <ddm_common/image_codec.h>
 #include <ddm_msgs/testing/expect_error.h>
-#include <ddm_plant_plugin/picture_message.h>
+#include <ddm_plant_plugin/image_message.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -29,7 +29,7 @@ using testing::SceneModel;
 using testing::throwsNaming;
 using Bytes = std::vector<std::uint8_t>;
 
-Picture drawn(const SceneModel& scene, const RenderOptions& options) {
+RenderedImage drawn(const SceneModel& scene, const RenderOptions& options) {
   return Renderer(scene.model, options).draw(*scene.data);
 }
 
@@ -40,11 +40,12 @@ struct Spot {
   double row = 0.0;
 };
 
-Spot spotOf(const Picture& picture, const std::function<bool(int r, int g, int b)>& belongs) {
+Spot spotOf(const RenderedImage& rendered,
+            const std::function<bool(int r, int g, int b)>& belongs) {
   Spot spot;
-  const std::uint8_t* at = picture.bytes.data();
-  for (int row = 0; row < picture.height; ++row) {
-    for (int column = 0; column < picture.width; ++column, at += picture.channels) {
+  const std::uint8_t* at = rendered.bytes.data();
+  for (int row = 0; row < rendered.height; ++row) {
+    for (int column = 0; column < rendered.width; ++column, at += rendered.channels) {
       if (!belongs(at[0], at[1], at[2])) continue;
       ++spot.count;
       spot.column += column + 0.5;
@@ -58,7 +59,7 @@ Spot spotOf(const Picture& picture, const std::function<bool(int r, int g, int b
 
 bool isRed(int red, int green, int blue) { return red > 60 && red > 3 * green && red > 3 * blue; }
 
-double meanDifference(const Picture& a, const Picture& b) {
+double meanDifference(const RenderedImage& a, const RenderedImage& b) {
   EXPECT_EQ(a.bytes.size(), b.bytes.size());
   double sum = 0.0;
   for (std::size_t i = 0; i < a.bytes.size(); ++i) sum += std::abs(a.bytes[i] - b.bytes[i]);
@@ -140,7 +141,7 @@ TEST(Renderer, DrawsOnTheCallersThread) {
 }
 
 TEST(Renderer, TurnsEveryColourIntoTheGreyOfAReader) {
-  Picture colours;
+  RenderedImage colours;
   colours.width = colours.height = 256;
   colours.channels = 3;
   for (int i = 0; i < 256 * 256; ++i) {
@@ -160,7 +161,7 @@ TEST(Renderer, AveragesWhatItDrawsLarger) {
     options.supersampling = supersampling;
     return drawn(scene, options);
   };
-  const Picture small = drawnIn(20, 3), large = drawnIn(60, 1);
+  const RenderedImage small = drawnIn(20, 3), large = drawnIn(60, 1);
   for (int row = 0; row < 10; ++row) {
     for (int byte = 0; byte < 60; ++byte) {
       int sum = 0;

@@ -95,9 +95,9 @@ class Cart : public ddm::Plant {
     return Eigen::VectorXd::Constant(1, state[0]);
   }
 
-  /// Draws a white cart on black. Grey falls from 1 to 0 over edge_softness at the edges.
-  ddm::Picture draw(const Eigen::VectorXd& state) const override {
-    const int size = options_.picture_size;
+  /// Draws a white cart on black. Its brightness falls from 1 to 0 over edge_softness at the edges.
+  ddm::RenderedImage draw(const Eigen::VectorXd& state) const override {
+    const int size = options_.image_size;
     const double pixel = 2.0 * options_.half_extent / size;  // [m]
     const auto inside = [this](double offset) {              // 1 inside the cart, 0 outside
       const double depth = options_.half_width - std::abs(offset);

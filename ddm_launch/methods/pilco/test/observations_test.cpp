@@ -54,7 +54,7 @@ TEST_F(TrueStateTest, LearningMeetsTheMeasurementsThatThePolicyActedOn) {
     states.push_back(plant_->state());
     times.push_back(0.2 * t);
     measured.push_back(acting->observe({}));
-    data.append(Grey(4, 0), Eigen::VectorXd::Zero(1), t == 0);
+    data.append(Image(4, 0), Eigen::VectorXd::Zero(1), t == 0);
     plant_->step(Eigen::VectorXd::Constant(1, 0.3 * t));
   }
   writeText(scratch_.file("trajectory.csv"),
@@ -69,7 +69,7 @@ TEST_F(TrueStateTest, LearningMeetsTheMeasurementsThatThePolicyActedOn) {
 
 TEST_F(TrueStateTest, FramesThatDoNotFitTheBagBesideThemAreRefusedWithTheFile) {
   DataSet data(2, 1);  // two trials of 3 samples
-  for (int t = 0; t < 6; ++t) data.append(Grey(4, 0), Eigen::VectorXd::Zero(1), t % 3 == 0);
+  for (int t = 0; t < 6; ++t) data.append(Image(4, 0), Eigen::VectorXd::Zero(1), t % 3 == 0);
   const auto observation = observeTrueState({}, *plant_);
   std::vector<std::string> bags;
   const auto write = [&](const std::string& trial, size_t frames) {

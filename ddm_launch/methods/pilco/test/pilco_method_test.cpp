@@ -235,7 +235,7 @@ class PointlessObservation : public Observation {
     return {randomMatrix(1, data.numFrames(), 1),
             {{}, false, {zero, one}, cost, Eigen::VectorXd::Constant(1, 1e-200)}};
   }
-  Eigen::VectorXd observe(const Grey& /*grey*/) override { return Eigen::VectorXd::Zero(1); }
+  Eigen::VectorXd observe(const Image& /*image*/) override { return Eigen::VectorXd::Zero(1); }
 };
 
 TEST_F(PilcoMethodTest, GoesOnWithAFirstPolicyWhereNoCostIsFinite) {

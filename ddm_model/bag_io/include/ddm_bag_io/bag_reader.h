@@ -48,7 +48,7 @@ struct BagOptions {
 /// @param image_size  width and height of the result [pixels]
 /// @return            [image_size^2]
 /// @throws std::invalid_argument see decodeImage()
-Grey greyOf(const sensor_msgs::Image& image, int image_size, const BagOptions& options);
+Image greyOf(const sensor_msgs::Image& image, int image_size, const BagOptions& options);
 
 /// Content of a bag.
 struct BagContent {

@@ -63,11 +63,11 @@ sensor_msgs::Image encodeImage(const std::vector<std::uint8_t>& grey, int size,
 
 /// Reads an image file as grey values at its own size; any format that OpenCV reads.
 /// @throws std::invalid_argument with the path if the file is not an image
-sensor_msgs::Image readPicture(const std::string& path);
+sensor_msgs::Image readImageFile(const std::string& path);
 
 /// Writes an image file; the suffix of the path determines the format.
 /// @param image  mono8 or rgb8
 /// @throws std::runtime_error with the path
-void writePicture(const std::string& path, const sensor_msgs::Image& image);
+void writeImageFile(const std::string& path, const sensor_msgs::Image& image);
 
 }  // namespace ddm

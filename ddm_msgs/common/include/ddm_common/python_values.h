@@ -165,7 +165,7 @@ class Images {
 
   /// Grey values of an image as all nodes and programs compute them, see decodeImage().
   /// @return [image_size^2]
-  std::vector<std::uint8_t> grey(Eigen::Index number, int image_size) const {
+  std::vector<std::uint8_t> greyValues(Eigen::Index number, int image_size) const {
     const Eigen::Index bytes = height_ * width_ * channels_;
     const std::uint8_t* const begin = array_.data() + number * bytes;
     if (channels_ == 1 && height_ == image_size && width_ == image_size) {

@@ -15,14 +15,14 @@
 #include <vector>
 
 #include "ddm_sim/camera.h"
-#include "ddm_sim/picture.h"
 #include "ddm_sim/plant.h"
+#include "ddm_sim/rendered_image.h"
 
 namespace ddm {
 namespace testing {
 
 /// An image with one grey value, fully covered by the plant.
-inline Picture plainPicture(int size, std::uint8_t grey) {
+inline RenderedImage plainImage(int size, std::uint8_t grey) {
   const auto num_pixels = static_cast<std::size_t>(size) * static_cast<std::size_t>(size);
   return brightOnBlack(size, std::vector<std::uint8_t>(num_pixels, grey));
 }
@@ -55,8 +55,8 @@ class ToyPlant : public Plant {
         [](const Eigen::VectorXd& state, const Eigen::VectorXd& goal) {
           return std::abs(state[0] - goal[0]);
         };
-    std::function<Picture(const Eigen::VectorXd&)> draw = [](const Eigen::VectorXd&) {
-      return plainPicture(51, 255);
+    std::function<RenderedImage(const Eigen::VectorXd&)> draw = [](const Eigen::VectorXd&) {
+      return plainImage(51, 255);
     };
     std::function<Eigen::VectorXd(const Eigen::VectorXd&)> locate =
         [](const Eigen::VectorXd& state) { return Eigen::VectorXd(state.head(1)); };
@@ -88,7 +88,7 @@ class ToyPlant : public Plant {
   double distance(const Eigen::VectorXd& state, const Eigen::VectorXd& goal) const override {
     return traits_.distance(state, goal);
   }
-  Picture draw(const Eigen::VectorXd& state) const override { return traits_.draw(state); }
+  RenderedImage draw(const Eigen::VectorXd& state) const override { return traits_.draw(state); }
   Eigen::VectorXd locate(const Eigen::VectorXd& state) const override {
     return traits_.locate(state);
   }
@@ -117,16 +117,16 @@ class ToyMaker : public PlantMaker {
 inline ToyPlant::Traits colourfulToy() {
   ToyPlant::Traits traits;
   traits.draw = [](const Eigen::VectorXd& state) {
-    Picture picture{30, 10, 3, {}, {}};
-    for (int i = 0; i < picture.height; ++i) {
-      for (int j = 0; j < picture.width; ++j) {
+    RenderedImage rendered{30, 10, 3, {}, {}};
+    for (int i = 0; i < rendered.height; ++i) {
+      for (int j = 0; j < rendered.width; ++j) {
         const bool inside = std::hypot(0.1 * (j - 15) - state[0], 0.1 * (i - 5)) < 0.3;
         const std::uint8_t red = inside ? 200 : 0;
-        picture.bytes.insert(picture.bytes.end(), {red, static_cast<std::uint8_t>(red / 2), 0});
-        picture.cover.push_back(inside ? 255 : 0);
+        rendered.bytes.insert(rendered.bytes.end(), {red, static_cast<std::uint8_t>(red / 2), 0});
+        rendered.cover.push_back(inside ? 255 : 0);
       }
     }
-    return picture;
+    return rendered;
   };
   traits.reward = [](const Eigen::VectorXd& state, const Eigen::VectorXd& torque) {
     return -state.squaredNorm() - 0.1 * torque.squaredNorm();

@@ -43,7 +43,7 @@ struct MujocoOptions : PlantOptions {
   std::string reward;                     ///< name of a reward in rewards.h; empty: no reward
   int episode_frames = 0;                 ///< physics steps of an evaluation; 0: as long as a trial
 
-  RenderOptions look;  ///< how the learner's image is drawn; its size is picture_size
+  RenderOptions look;  ///< how the learner's image is drawn; its size is image_size
 
   MujocoOptions() {
     type = "mujoco";

@@ -45,14 +45,14 @@ class MujocoPlant : public Plant {
                                const Eigen::VectorXd& torque) const override;
   std::optional<CameraModel> cameraModel() const override;
   std::optional<CameraModel> viewModel() const override;
-  Picture view(const Eigen::VectorXd& state) const override;
+  RenderedImage view(const Eigen::VectorXd& state) const override;
 
  private:
   Eigen::VectorXd advance(const Eigen::VectorXd& state,
                           const Eigen::VectorXd& torque) const override;
   double rewardOfStep(const Eigen::VectorXd& state, const Eigen::VectorXd& torque) const override;
   double distance(const Eigen::VectorXd& state, const Eigen::VectorXd& goal) const override;
-  Picture draw(const Eigen::VectorXd& state) const override;
+  RenderedImage draw(const Eigen::VectorXd& state) const override;
   Eigen::VectorXd locate(const Eigen::VectorXd& state) const override;
 
   std::shared_ptr<const MujocoModel> model_;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ddm_sim/picture.h>
+#include <ddm_sim/rendered_image.h>
 #include <mujoco/mujoco.h>
 
 #include <cstdint>
@@ -65,13 +65,13 @@ class Renderer {
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  /// Draws the rendered image of the camera; the cover (Picture) stays empty. Several threads may
+  /// Draws the rendered image of the camera; the cover (RenderedImage) stays empty. Several threads may
   /// call this function; one thread draws at a time.
   /// @param data  positions of the state, after mj_forward(), or after mj_kinematics() and
   ///         mj_camlight()
   /// @throws std::runtime_error naming the step that fails: EGL is missing, or the driver cannot
   ///         draw an image of this size
-  Picture draw(const mjData& data);
+  RenderedImage draw(const mjData& data);
 
   /// Position and lens of the camera in this state. Draws nothing.
   CameraModel camera(const mjData& data);
@@ -104,6 +104,6 @@ std::string openGlRenderer();
 bool isDrawnAndMoves(const mjModel& model, int geom);
 
 /// Grey image of a colour image by the formula above. Returns a grey image unchanged.
-Picture greyOf(const Picture& picture);
+RenderedImage greyOf(const RenderedImage& rendered);
 
 }  // namespace ddm

@@ -50,7 +50,7 @@ class FeaturePlane {
 
 /// One of several images side by side, with a caption.
 struct Panel {
-  Grey grey;  ///< empty: the panel stays black
+  Image image;  ///< empty: the panel stays black
   std::string caption;
 };
 

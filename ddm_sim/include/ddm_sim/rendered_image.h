@@ -14,7 +14,7 @@ namespace ddm {
 
 /// A rendered image. Rows run from top to bottom, pixels of a row from left to right; the channels
 /// of a pixel are adjacent.
-struct Picture {
+struct RenderedImage {
   int width = 0;                    ///< [pixels]
   int height = 0;                   ///< [pixels]
   int channels = 1;                 ///< 1: grey; 3: red, green, blue
@@ -32,7 +32,7 @@ struct Picture {
 };
 
 /// A square grey image of a bright plant on black. The grey value of a pixel is also its cover.
-inline Picture brightOnBlack(int size, std::vector<std::uint8_t> bytes) {
+inline RenderedImage brightOnBlack(int size, std::vector<std::uint8_t> bytes) {
   return {size, size, 1, bytes, std::move(bytes)};
 }
 

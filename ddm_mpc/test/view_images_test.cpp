@@ -1,6 +1,6 @@
-// Tests of the pictures of view_node: where things are drawn, and in which colour.
+// Tests of the images of view_node: where things are drawn, and in which colour.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pictures.h"
+#include "view_images.h"
 
 #include <gtest/gtest.h>
 
@@ -24,8 +24,8 @@ RandomModelOptions featureDim(int feature_dim) {
   return options;
 }
 
-cv::Vec3b colourAt(const cv::Mat& picture, const Eigen::VectorXd& z) {
-  return picture.at<cv::Vec3b>(FeaturePlane::pixelOf(z));
+cv::Vec3b colourAt(const cv::Mat& drawing, const Eigen::VectorXd& z) {
+  return drawing.at<cv::Vec3b>(FeaturePlane::pixelOf(z));
 }
 
 Eigen::VectorXd feature(std::initializer_list<double> values) {
@@ -36,18 +36,18 @@ Eigen::VectorXd feature(std::initializer_list<double> values) {
 
 bool isGrey(const cv::Vec3b& colour) { return colour[0] == colour[1] && colour[1] == colour[2]; }
 
-double meanGrey(const Grey& grey) {
+double meanOf(const Image& image) {
   double sum = 0.0;
-  for (const std::uint8_t k : grey) sum += k;
-  return sum / static_cast<double>(grey.size());
+  for (const std::uint8_t k : image) sum += k;
+  return sum / static_cast<double>(image.size());
 }
 
 /// Mean of the image of the grid whose middle is z.
-double meanAt(const cv::Mat& picture, const Eigen::VectorXd& z) {
+double meanAt(const cv::Mat& drawing, const Eigen::VectorXd& z) {
   const cv::Point corner =
       FeaturePlane::pixelOf(z) - cv::Point(FeaturePlane::kPitch / 2, FeaturePlane::kPitch / 2);
   return cv::mean(
-      picture(cv::Rect(corner, cv::Size(FeaturePlane::kPitch, FeaturePlane::kPitch))))[0];
+      drawing(cv::Rect(corner, cv::Size(FeaturePlane::kPitch, FeaturePlane::kPitch))))[0];
 }
 
 TEST(FeaturePlane, DecodesEachPointOfTheGridWithTheFirstFeatureToTheRightAndTheSecondUpwards) {
@@ -55,12 +55,12 @@ TEST(FeaturePlane, DecodesEachPointOfTheGridWithTheFirstFeatureToTheRightAndTheS
   EXPECT_EQ(FeaturePlane::pixelOf(feature({1.0, 0.0})), origin + cv::Point(192, 0));
   EXPECT_EQ(FeaturePlane::pixelOf(feature({0.0, 1.0})), origin - cv::Point(0, 192));
   const Ddm model = randomModel({});
-  const cv::Mat picture = FeaturePlane(model).draw({});
-  ASSERT_EQ(picture.size(), cv::Size(FeaturePlane::kWidth, FeaturePlane::kWidth));
+  const cv::Mat drawing = FeaturePlane(model).draw({});
+  ASSERT_EQ(drawing.size(), cv::Size(FeaturePlane::kWidth, FeaturePlane::kWidth));
   for (int row = 0; row < FeaturePlane::kGrid; ++row) {
     for (int column = 0; column < FeaturePlane::kGrid; ++column) {
       const Eigen::VectorXd z = feature({-1.0 + 0.25 * column, -1.0 + 0.25 * row});
-      EXPECT_NEAR(meanAt(picture, z), meanGrey(model.decode(z)), 0.51) << z.transpose();
+      EXPECT_NEAR(meanAt(drawing, z), meanOf(model.decode(z)), 0.51) << z.transpose();
     }
   }
 }
@@ -73,21 +73,21 @@ TEST(FeaturePlane, DrawsEachPartInItsColour) {
   overlay.goal = feature({-0.5, -0.5});
   overlay.plan.resize(2, 2);
   overlay.plan << 0.1, 0.9, -0.3, -0.3;
-  const cv::Mat picture = plane.draw(overlay);
-  EXPECT_EQ(colourAt(picture, overlay.experience), kGreen);
-  EXPECT_EQ(colourAt(picture, overlay.current), kCyan);
-  EXPECT_EQ(colourAt(picture, overlay.goal), kRed);
-  EXPECT_EQ(colourAt(picture, overlay.plan.col(0)), kYellow);
-  EXPECT_EQ(colourAt(picture, overlay.plan.col(1)), kYellow);
-  EXPECT_EQ(colourAt(picture, feature({0.5, -0.3})), kYellow) << "the line between them";
-  EXPECT_TRUE(isGrey(colourAt(picture, feature({0.0, 0.8}))));
+  const cv::Mat drawing = plane.draw(overlay);
+  EXPECT_EQ(colourAt(drawing, overlay.experience), kGreen);
+  EXPECT_EQ(colourAt(drawing, overlay.current), kCyan);
+  EXPECT_EQ(colourAt(drawing, overlay.goal), kRed);
+  EXPECT_EQ(colourAt(drawing, overlay.plan.col(0)), kYellow);
+  EXPECT_EQ(colourAt(drawing, overlay.plan.col(1)), kYellow);
+  EXPECT_EQ(colourAt(drawing, feature({0.5, -0.3})), kYellow) << "the line between them";
+  EXPECT_TRUE(isGrey(colourAt(drawing, feature({0.0, 0.8}))));
 }
 
 TEST(FeaturePlane, ShowsOneFeatureAsARowOfImages) {
   const Ddm model = randomModel(featureDim(1));
   const FeaturePlane plane(model);
   const Eigen::VectorXd z = feature({-0.5});
-  EXPECT_NEAR(meanAt(plane.draw({}), z), meanGrey(model.decode(z)), 0.51);
+  EXPECT_NEAR(meanAt(plane.draw({}), z), meanOf(model.decode(z)), 0.51);
   EXPECT_EQ(FeaturePlane::pixelOf(z).y, FeaturePlane::kWidth / 2);
   FeatureOverlay overlay;
   overlay.current = z;
@@ -99,7 +99,7 @@ TEST(FeaturePlane, GivesFurtherFeaturesTheValueOfTheGoal) {
   Eigen::VectorXd z = model.goalFeature();
   z[0] = 0.75;
   z[1] = -0.25;
-  EXPECT_NEAR(meanAt(FeaturePlane(model).draw({}), z), meanGrey(model.decode(z)), 0.51);
+  EXPECT_NEAR(meanAt(FeaturePlane(model).draw({}), z), meanOf(model.decode(z)), 0.51);
 }
 
 TEST(FeaturePlane, SurvivesFeaturesFarAwayAndFeaturesThatAreNoNumbers) {

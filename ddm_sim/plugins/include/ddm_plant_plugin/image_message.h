@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ddm_sim/picture.h>
 #include <ddm_sim/plant.h>
+#include <ddm_sim/rendered_image.h>
 #include <ros/time.h>
 #include <sensor_msgs/Image.h>
 
@@ -19,17 +19,17 @@ inline std::string opticalFrame(const std::optional<CameraModel>& camera) {
 }
 
 /// A mono8 or rgb8 message without padding.
-inline sensor_msgs::Image imageMessage(const Picture& picture, const ros::Time& stamp,
+inline sensor_msgs::Image imageMessage(const RenderedImage& rendered, const ros::Time& stamp,
                                        const std::string& frame = "camera") {
   sensor_msgs::Image image;
   image.header.stamp = stamp;
   image.header.frame_id = frame;
-  image.width = static_cast<std::uint32_t>(picture.width);
-  image.height = static_cast<std::uint32_t>(picture.height);
-  image.encoding = picture.channels == 1 ? "mono8" : "rgb8";
+  image.width = static_cast<std::uint32_t>(rendered.width);
+  image.height = static_cast<std::uint32_t>(rendered.height);
+  image.encoding = rendered.channels == 1 ? "mono8" : "rgb8";
   image.is_bigendian = 0;
-  image.step = image.width * static_cast<std::uint32_t>(picture.channels);
-  image.data = picture.bytes;
+  image.step = image.width * static_cast<std::uint32_t>(rendered.channels);
+  image.data = rendered.bytes;
   return image;
 }
 

@@ -1,6 +1,6 @@
 // Images that view_node draws: the feature space, and several images side by side.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pictures.h"
+#include "view_images.h"
 
 #include <algorithm>
 #include <cmath>
@@ -25,25 +25,25 @@ constexpr int kLargeRadius = 6;
 constexpr double kFarthestDot = 10.0;
 
 /// Draws a dot with an outline that keeps it visible on black, on white and on other dots.
-void drawDot(const cv::Point& at, int radius, const cv::Scalar& colour, cv::Mat* picture) {
-  cv::circle(*picture, at, radius + 1, kOutline, cv::FILLED);
-  cv::circle(*picture, at, radius, colour, cv::FILLED);
+void drawDot(const cv::Point& at, int radius, const cv::Scalar& colour, cv::Mat* drawing) {
+  cv::circle(*drawing, at, radius + 1, kOutline, cv::FILLED);
+  cv::circle(*drawing, at, radius, colour, cv::FILLED);
 }
 
 void drawText(const std::string& text, const cv::Point& at, const cv::Scalar& colour,
-              cv::Mat* picture) {
-  cv::putText(*picture, text, at, cv::FONT_HERSHEY_SIMPLEX, 0.5, colour, 1, cv::LINE_AA);
+              cv::Mat* drawing) {
+  cv::putText(*drawing, text, at, cv::FONT_HERSHEY_SIMPLEX, 0.5, colour, 1, cv::LINE_AA);
 }
 
 /// Draws the legend of the colours below the grid, and the names of the axes.
-void drawLegend(cv::Mat* picture) {
+void drawLegend(cv::Mat* drawing) {
   const int baseline = FeaturePlane::kWidth - 20;
-  drawText("experience", {86, baseline}, kExperience, picture);
-  drawText("current", {216, baseline}, kCurrent, picture);
-  drawText("plan", {320, baseline}, kPlan, picture);
-  drawText("goal", {404, baseline}, kGoal, picture);
-  drawText("z1", {FeaturePlane::kWidth - 40, FeaturePlane::kWidth / 2 + 5}, kText, picture);
-  drawText("z2", {FeaturePlane::kWidth / 2 - 8, 30}, kText, picture);
+  drawText("experience", {86, baseline}, kExperience, drawing);
+  drawText("current", {216, baseline}, kCurrent, drawing);
+  drawText("plan", {320, baseline}, kPlan, drawing);
+  drawText("goal", {404, baseline}, kGoal, drawing);
+  drawText("z1", {FeaturePlane::kWidth - 40, FeaturePlane::kWidth / 2 + 5}, kText, drawing);
+  drawText("z2", {FeaturePlane::kWidth / 2 - 8, 30}, kText, drawing);
 }
 
 }  // namespace
@@ -57,8 +57,8 @@ FeaturePlane::FeaturePlane(const Ddm& model) : grid_(kWidth, kWidth, CV_8UC3, kM
     if (rows > 1) z[1] = 1.0 - step * row;
     for (int column = 0; column < kGrid; ++column) {
       z[0] = -1.0 + step * column;
-      Grey grey = model.decode(z);
-      const cv::Mat image(model.imageSize(), model.imageSize(), CV_8UC1, grey.data());
+      Image pixels = model.decode(z);
+      const cv::Mat image(model.imageSize(), model.imageSize(), CV_8UC1, pixels.data());
       cv::Mat resized;
       cv::resize(image, resized, cv::Size(kPitch, kPitch), 0.0, 0.0, cv::INTER_AREA);
       const cv::Point corner = pixelOf(z) - cv::Point(kPitch / 2, kPitch / 2);
@@ -77,42 +77,42 @@ cv::Point FeaturePlane::pixelOf(const Eigen::Ref<const Eigen::VectorXd>& z) {
 }
 
 cv::Mat FeaturePlane::draw(const FeatureOverlay& overlay) const {
-  cv::Mat picture = grid_.clone();
-  const auto drawDots = [&picture](const Eigen::MatrixXd& Z, int radius, const cv::Scalar& colour) {
+  cv::Mat drawing = grid_.clone();
+  const auto drawDots = [&drawing](const Eigen::MatrixXd& Z, int radius, const cv::Scalar& colour) {
     for (Eigen::Index i = 0; i < Z.cols(); ++i)
-      drawDot(pixelOf(Z.col(i)), radius, colour, &picture);
+      drawDot(pixelOf(Z.col(i)), radius, colour, &drawing);
   };
   for (Eigen::Index i = 0; i < overlay.experience.cols(); ++i) {
-    cv::circle(picture, pixelOf(overlay.experience.col(i)), kSmallRadius, kExperience, cv::FILLED);
+    cv::circle(drawing, pixelOf(overlay.experience.col(i)), kSmallRadius, kExperience, cv::FILLED);
   }
   for (Eigen::Index k = 1; k < overlay.plan.cols(); ++k) {
-    cv::line(picture, pixelOf(overlay.plan.col(k - 1)), pixelOf(overlay.plan.col(k)), kPlan, 2,
+    cv::line(drawing, pixelOf(overlay.plan.col(k - 1)), pixelOf(overlay.plan.col(k)), kPlan, 2,
              cv::LINE_AA);
   }
   drawDots(overlay.plan, kPlanRadius, kPlan);
   drawDots(overlay.goal, kLargeRadius, kGoal);
   drawDots(overlay.current, kLargeRadius, kCurrent);
-  return picture;
+  return drawing;
 }
 
 cv::Mat drawPanels(const std::vector<Panel>& panels, int image_size) {
   const cv::Scalar separator_grey(128), caption_grey(220);
   const int size = panelSize(image_size);
   const int count = static_cast<int>(panels.size());
-  cv::Mat picture(size + kPanelCaption, count * size + (count - 1) * kPanelSeparator, CV_8UC1,
+  cv::Mat drawing(size + kPanelCaption, count * size + (count - 1) * kPanelSeparator, CV_8UC1,
                   cv::Scalar(0));
   for (int i = 0; i < count; ++i) {
     const int left = i * (size + kPanelSeparator);
-    if (i > 0) picture.colRange(left - kPanelSeparator, left).setTo(separator_grey);
-    cv::putText(picture, panels[i].caption, {left + 6, size + kPanelCaption - 7},
+    if (i > 0) drawing.colRange(left - kPanelSeparator, left).setTo(separator_grey);
+    cv::putText(drawing, panels[i].caption, {left + 6, size + kPanelCaption - 7},
                 cv::FONT_HERSHEY_SIMPLEX, 0.5, caption_grey, 1, cv::LINE_AA);
-    if (panels[i].grey.empty()) continue;
-    Grey grey = panels[i].grey;  // cv::Mat requires mutable pixels
-    const cv::Mat image(image_size, image_size, CV_8UC1, grey.data());
-    cv::resize(image, picture(cv::Rect(left, 0, size, size)), cv::Size(size, size), 0.0, 0.0,
+    if (panels[i].image.empty()) continue;
+    Image pixels = panels[i].image;  // cv::Mat requires mutable pixels
+    const cv::Mat image(image_size, image_size, CV_8UC1, pixels.data());
+    cv::resize(image, drawing(cv::Rect(left, 0, size, size)), cv::Size(size, size), 0.0, 0.0,
                cv::INTER_NEAREST);
   }
-  return picture;
+  return drawing;
 }
 
 }  // namespace ddm
