@@ -25,6 +25,12 @@ namespace {
 constexpr std::uint32_t kThreads = 2;
 constexpr char kBagUnderWay[] = "";             // StartRecording: continue with the open bag
 constexpr std::chrono::milliseconds kLook(20);  // period for conditions without a callback
+constexpr char kCancelled[] =
+    "was cancelled, as it is when the motors of a robot are stopped in a trial: the same command "
+    "resumes";
+constexpr char kClockSetBack[] =
+    "takes no goal with an earlier stamp than its last one, and the clock was set back: start the "
+    "nodes again; the same command resumes";
 
 /// Node handle for the action clients, whose callbacks go to `queue`.
 ros::NodeHandle withQueue(ros::NodeHandle nh, ros::CallbackQueue* queue, double limit) {
@@ -43,10 +49,6 @@ std::vector<std::string> loopTopics(const ros::NodeHandle& nh) {
   return names;
 }
 
-Eigen::VectorXd vectorOf(const double* values, size_t size) {
-  return Eigen::Map<const Eigen::VectorXd>(values, static_cast<Eigen::Index>(size));
-}
-
 }  // namespace
 
 RosDriver::RosDriver(const ros::NodeHandle& nh, double timeout, Peers peers)
@@ -63,12 +65,12 @@ RosDriver::RosDriver(const ros::NodeHandle& nh, double timeout, Peers peers)
       topics::kGroundTruth, 0, [this](const sensor_msgs::JointStateConstPtr& state) {
         if (keeps_ground_truth_) ground_truth_[state->header.stamp] = *state;
       });
-  const auto on_model = [this](const ddm_msgs::ModelConstPtr& model) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    model_ = model;
-    changed_.notify_all();
-  };
-  model_sub_ = nh_.subscribe<ddm_msgs::Model>(topics::kModel, 1, on_model);
+  model_sub_ = nh_.subscribe<ddm_msgs::Model>(topics::kModel, 1,
+                                              [this](const ddm_msgs::ModelConstPtr& model) {
+                                                const std::lock_guard<std::mutex> lock(mutex_);
+                                                model_ = model;
+                                                changed_.notify_all();
+                                              });
   // The spinner starts after the action clients are complete. An incomplete client drops the first
   // status of its server, and while simulated time stands still, the server sends no second one.
   spinner_.start();
@@ -179,15 +181,8 @@ auto RosDriver::execute(Client* client, const std::string& name, const Goal& goa
   const State state = client->getState();
   if (state == State::SUCCEEDED) return *client->getResult();
   std::string reason = state.toString() + ", " + state.getText();
-  if (state == State::PREEMPTED) {
-    reason =
-        "was cancelled, as it is when the motors of a robot are stopped in a trial: the same "
-        "command resumes";
-  } else if (state == State::RECALLED) {
-    reason =
-        "takes no goal with an earlier stamp than its last one, and the clock was set back: "
-        "start the nodes again; the same command resumes";
-  }
+  if (state == State::PREEMPTED) reason = kCancelled;
+  if (state == State::RECALLED) reason = kClockSetBack;
   throw std::runtime_error("action " + name + ": " + reason);
 }
 
@@ -222,10 +217,12 @@ TrialOutcome RosDriver::runTrial(const TrialRequest& request, const PhaseCallbac
   if (!request.bag.empty()) stopRecording(request.num_steps, result.last, begin.goal);
 
   TrialOutcome outcome;
-  const size_t torque_dim = result.torque.size() / result.num_steps;
-  for (size_t step = 0; step < result.num_steps; ++step) {
-    outcome.torques.push_back(vectorOf(result.torque.data() + step * torque_dim, torque_dim));
-    outcome.exploratory.push_back(result.exploratory[step] != 0);
+  const Eigen::Map<const Eigen::MatrixXd> torques(
+      result.torque.data(), static_cast<Eigen::Index>(result.torque.size() / result.num_steps),
+      static_cast<Eigen::Index>(result.num_steps));
+  for (Eigen::Index step = 0; step < torques.cols(); ++step) {
+    outcome.torques.emplace_back(torques.col(step));
+    outcome.exploratory.push_back(result.exploratory[static_cast<size_t>(step)] != 0);
   }
   outcome.solve_times = result.solve_time;
   outcome.goal_distances = result.goal_distance;
@@ -303,11 +300,12 @@ void RosDriver::takeGroundTruth(const std::vector<ros::Time>& stamps, TrialOutco
                    describePublishers(ground_truth_sub_.getTopic());
           });
   for (const ros::Time& stamp : stamps) {
-    const sensor_msgs::JointState& joints = ground_truth_[stamp];
-    std::vector<double> values = joints.position;
-    values.insert(values.end(), joints.velocity.begin(), joints.velocity.end());
+    std::vector<double> values = ground_truth_[stamp].position;
+    const std::vector<double>& rates = ground_truth_[stamp].velocity;
+    values.insert(values.end(), rates.begin(), rates.end());
     outcome->times.push_back((stamp - stamps.front()).toSec());
-    outcome->states.push_back(vectorOf(values.data(), values.size()));
+    outcome->states.emplace_back(
+        Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));
   }
 }
 
