@@ -26,8 +26,8 @@ EVALUATION = re.compile(r"evaluation_(\d+)$")
 STRIP_IMAGES = 12
 
 # One evaluation. title: text. dt: time step [s]. episode: an Episode. expected: for each image the image that was seen in
-# training and is nearest to the prediction, or None. features: projected features  [N x 2]. paths: for each image its feature and the features predicted from it
-# [steps + 1 x 2]. support_states, goal: projected features  [.. x 2].
+# training and is nearest to the prediction, or None. features: projected features  [N x 2]. paths: for each image its
+# feature and the features predicted from it  [steps + 1 x 2]. support_states, goal: projected features  [.. x 2].
 Clip = collections.namedtuple("Clip", "title dt episode expected features paths support_states goal")
 
 
@@ -186,8 +186,9 @@ def draw_strip(options):
 FILM = Figure(
     "Greedy evaluations of run folders, one after the other. Left: the plant and the goal image. Right: the image of the learner, "
     "without nuisances of the camera; what the model predicted one second earlier, given the torques applied since, as the image "
-    "seen in training whose feature is nearest to the predicted one; their difference; and the feature space, with states that the model has seen (grey), the goal (red), the current image "
-    "(blue) and the features predicted from it under the torques to come (orange).",
+    "seen in training whose feature is nearest to the predicted one; their difference; and the feature space, with states that "
+    "the model has seen (grey), the goal (red), the current image (blue) and the features predicted from it under the torques "
+    "to come (orange).",
     [argument("evaluations", metavar="RUN/evaluation_NNN", nargs="+", help="shown one after the other"),
      argument("--seconds", type=number(float, 0), default=10.0, help="of each, default %(default)g")], draw_film, SUFFIX)
 STRIP = Figure(

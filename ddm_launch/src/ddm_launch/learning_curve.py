@@ -35,7 +35,7 @@ def draw_one(axes, trials, unit, tolerance):
                          linewidths=0.8, zorder=2, label=label)
     if not has_errors:
         axes.set_ylim(-0.2, 1.2)
-        axes.set_ylabel("success [-]")
+        axes.set_ylabel("success")
         return
     axes.axhline(tolerance, color=GREY, linewidth=1, linestyle="--", zorder=0)
     axes.set_ylim(bottom=0)

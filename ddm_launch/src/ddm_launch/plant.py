@@ -37,7 +37,8 @@ class Joints:
 
 
 # An episode that was simulated again. images: grey images, one more than torques  [N + 1 x size x size]. views: images for
-# people, one for each torque, or none  [N x height x width x 3]. goal: goal image  [size x size]. torques: table with a column for each motor.
+# people, one for each torque, or none  [N x height x width x 3]. goal: goal image  [size x size]. torques: table with a
+# column for each motor.
 Episode = collections.namedtuple("Episode", "images views goal torques")
 
 

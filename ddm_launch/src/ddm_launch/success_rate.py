@@ -82,7 +82,7 @@ def draw_curves(axes, curves, wilson):
     axes.xaxis.set_major_locator(MaxNLocator(nbins=6, steps=[1, 2, 5, 10]))
     axes.set_ylim(-0.04, 1.04)
     axes.set_xlabel("frames learned from [image-torque pairs]")
-    axes.set_ylabel("success rate [-]")
+    axes.set_ylabel("success rate")
     axes.grid(True)
 
 

@@ -16,7 +16,7 @@ MOST_TURNS = 2.3  # largest angle in the panels [half turns of pi rad]; few traj
 TARGET = "#c8c8c8"  # light, so that lines stand out
 STYLES = {0: (VERMILLION, (0, (3, 1))), 1: (BLUE, "-")}  # success: colour and line style; successes are drawn last
 
-OURS = "efficient"
+OURS = "DDM"
 # Published methods in the figures: the same for each task, at most four. The table of published returns has further
 # methods.
 DRAWN = ("MR.Q", "DreamerV3", "DrQ-v2", "Dreamer v1")
@@ -63,7 +63,7 @@ def draw_task(options):
     ours = returns(options.table)
     with new_figure(COLUMN_WIDTH, 3.4) as figure:
         axes, place = panel_above_legend(figure)
-        colour, marker = METHOD_STYLES[OURS]
+        colour, marker = METHOD_STYLES["efficient"]
         axes.errorbar(PHYSICS_FRAMES * ours.index, ours["mean"], yerr=ours.se, color=colour, marker=marker, capsize=2,
                       elinewidth=0.8, zorder=5, label=OURS)
         for method, rows in published[published.task == task].groupby("method", sort=False):
@@ -73,8 +73,8 @@ def draw_task(options):
                           linewidth=0.9, label=method)
         axes.set_xscale("log")
         axes.set_ylim(bottom=-20)
-        axes.set_xlabel("physics frames learned from [-]")
-        axes.set_ylabel("mean return of an episode [-]")
+        axes.set_xlabel("physics frames learned from")
+        axes.set_ylabel("mean return of an episode")
         axes.grid(True)
         axes.secondary_xaxis("top", functions=(lambda frames: frames * step_s, lambda time: time / step_s)).set_xlabel(
             "robot time [s]")

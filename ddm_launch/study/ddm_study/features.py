@@ -59,7 +59,7 @@ def draw_strip(options):
                 show_image(one, image, interpolation="nearest")
         for one, steps in zip(axes[0], strip.steps):
             one.set_title("+%d" % steps if steps else "now", pad=3)
-        axes[1][len(strip) // 2].set_xlabel("steps ahead [-]")
+        axes[1][len(strip) // 2].set_xlabel("steps ahead")
         save(figure, options.out)
 
 

@@ -47,5 +47,5 @@ class FeatureGrid:
         axes.hlines(np.linspace(bottom, top, GRID + 1)[1:-1], left, right, **style)
         for axis in (axes.xaxis, axes.yaxis):
             axis.set_major_locator(MaxNLocator(nbins=7, steps=[1, 2, 5, 10]))
-        axes.set_xlabel("feature $z_1$ [-]")
-        axes.set_ylabel("feature $z_2$ [-]")
+        axes.set_xlabel("feature $z_1$")
+        axes.set_ylabel("feature $z_2$")

@@ -142,7 +142,7 @@ def draw_pairing(data):
 
 def draw_coverage(data):
     """Draws histograms of each feature and each torque."""
-    series = [("feature $z_{%d}$ [-]" % (i + 1), column, None) for i, column in enumerate(data.features.T)]
+    series = [("feature $z_{%d}$" % (i + 1), column, None) for i, column in enumerate(data.features.T)]
     series += [("torque $u_{%d}$ [N m]" % (i + 1), column, limit)
                for i, (column, limit) in enumerate(zip(data.torques.T, data.max_torque))]
     series = series[:6]
