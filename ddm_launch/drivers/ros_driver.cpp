@@ -65,12 +65,12 @@ RosDriver::RosDriver(const ros::NodeHandle& nh, double timeout, Peers peers)
       topics::kGroundTruth, 0, [this](const sensor_msgs::JointStateConstPtr& state) {
         if (keeps_ground_truth_) ground_truth_[state->header.stamp] = *state;
       });
-  model_sub_ = nh_.subscribe<ddm_msgs::Model>(topics::kModel, 1,
-                                              [this](const ddm_msgs::ModelConstPtr& model) {
-                                                const std::lock_guard<std::mutex> lock(mutex_);
-                                                model_ = model;
-                                                changed_.notify_all();
-                                              });
+  const auto on_model = [this](const ddm_msgs::ModelConstPtr& model) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    model_ = model;
+    changed_.notify_all();
+  };
+  model_sub_ = nh_.subscribe<ddm_msgs::Model>(topics::kModel, 1, on_model);
   // The spinner starts after the action clients are complete. An incomplete client drops the first
   // status of its server, and while simulated time stands still, the server sends no second one.
   spinner_.start();
@@ -300,9 +300,9 @@ void RosDriver::takeGroundTruth(const std::vector<ros::Time>& stamps, TrialOutco
                    describePublishers(ground_truth_sub_.getTopic());
           });
   for (const ros::Time& stamp : stamps) {
-    std::vector<double> values = ground_truth_[stamp].position;
-    const std::vector<double>& rates = ground_truth_[stamp].velocity;
-    values.insert(values.end(), rates.begin(), rates.end());
+    const sensor_msgs::JointState& joints = ground_truth_[stamp];
+    std::vector<double> values = joints.position;
+    values.insert(values.end(), joints.velocity.begin(), joints.velocity.end());
     outcome->times.push_back((stamp - stamps.front()).toSec());
     outcome->states.emplace_back(
         Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));

@@ -97,12 +97,12 @@ class Replay {
   }
 
   /// @return the torque that mpc_node computes for an image [N m]
-  Eigen::VectorXd propose(const Image& grey, int size, const Eigen::VectorXd& recorded) {
+  Eigen::VectorXd propose(const Image& image, int size, const Eigen::VectorXd& recorded) {
     const ros::Time stamp = ros::Time::now();
     ddm_msgs::Torque torque;
     torque.header.stamp = stamp;
     torque.torque.assign(recorded.data(), recorded.data() + recorded.size());
-    image_pub_.publish(encodeImage(grey, size, stamp, "camera"));
+    image_pub_.publish(encodeImage(image, size, stamp, "camera"));
     recorded_pub_.publish(torque);
     waitFor([this, stamp] { return answer_ != nullptr && answer_->header.stamp == stamp; },
             "mpc_node does not answer");

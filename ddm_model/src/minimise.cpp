@@ -125,8 +125,8 @@ class Search : public ceres::IterationCallback {
   Eigen::VectorXd point_;
   Eigen::VectorXd slope_;
   double accepted_cost_ = 0.0;  // of the last iteration
-  std::optional<TerminationReason>
-      ended_by_;  // limit that ended the search, unless Ceres checks it
+  // Limit that ended the search, unless Ceres checks it.
+  std::optional<TerminationReason> ended_by_;
 };
 
 class CeresFunction : public ceres::FirstOrderFunction {

@@ -20,7 +20,8 @@ from ddm_model.model_data import ModelDataError, read_bags
 SUFFIX = ".webp"
 AHEAD_S = 1.0
 # Text below the features: distance from the left edge as a share of the width, word, and colour.
-FEATURES = (0.0, "features:", "black"), (0.36, "now", BLUE), (0.52, "plan", ORANGE), (0.68, "goal", VERMILLION), (0.84, "seen", GREY)
+FEATURES = ((0.0, "features:", "black"), (0.36, "now", BLUE), (0.52, "plan", ORANGE), (0.68, "goal", VERMILLION),
+            (0.84, "seen", GREY))
 LAST_MS = 1500  # duration of the last image of an evaluation [ms]
 EVALUATION = re.compile(r"evaluation_(\d+)$")
 STRIP_IMAGES = 12
@@ -42,8 +43,8 @@ def plane_of(points):
 
 def seen_images(run, trial, image_size):
     """Images of all bags up to a trial  [N x size x size]. Raises Failure if a bag cannot be read."""
-    folders = [os.path.join(run, "trial_%03d" % number) for number in range(trial + 1)]
-    bags = sorted(path for folder in folders for path in glob.glob(os.path.join(glob.escape(folder), "**", "*.bag"), recursive=True))
+    patterns = [os.path.join(glob.escape(run), "trial_%03d" % number, "**", "*.bag") for number in range(trial + 1)]
+    bags = [path for pattern in patterns for path in sorted(glob.glob(pattern, recursive=True))]
     try:
         return np.concatenate([bag["images"] for bag in read_bags(bags, image_size)])
     except (ModelDataError, ValueError) as error:

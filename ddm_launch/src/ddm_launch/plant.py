@@ -43,13 +43,14 @@ Episode = collections.namedtuple("Episode", "images views goal torques")
 
 
 def grey(image):
+    """Grey values of an image of one or three channels."""
     return np.asarray(Image.fromarray(image).convert("L"))
 
 
 def draw_images(folder, start, torques=(), with_views=False, **episode):
     """Simulates the plant of a run folder, without disturbances of the camera. start: initial state. torques: [N x motors].
     with_views: whether to draw images for people, too. episode: seed and options of reset(), which select the goal of
-    plants that draw it. Returns an Episode without torques. Raises Failure if the Python bindings are missing."""
+    plants that draw it. Returns an Episode. Raises Failure if the Python bindings are missing."""
     try:
         import ddm_sim  # pylint: disable=import-outside-toplevel
     except ImportError as error:
@@ -59,11 +60,11 @@ def draw_images(folder, start, torques=(), with_views=False, **episode):
     seed = episode.pop("seed", 0)
     image, info = env.reset(seed=seed, options=dict(episode, start=start))
     images, views, goal = [grey(image)], [], grey(info["goal_image"])
-    for torque in torques:
+    for torque in np.asarray(torques):
         if with_views:
             views.append(env.render())
         images.append(grey(env.step(torque)[0]))
-    return Episode(np.array(images), np.array(views), goal, None)
+    return Episode(np.array(images), np.array(views), goal, torques)
 
 
 def draw_evaluation(run, trial, with_views=False):
@@ -74,6 +75,6 @@ def draw_evaluation(run, trial, with_views=False):
     if np.any(np.diff(trajectory.time_s) > 1.5 * float(read_setting(run, "plant/dt"))):
         raise Failure("in %s the camera has lost frames: only evaluations without camera/drop_rate can be drawn" % folder)
     torques = read_torques(folder)
-    episode = draw_images(run, trajectory.drop(columns=["step", "time_s"]).iloc[0], torques.values, with_views, trial=trial,
+    episode = draw_images(run, trajectory.drop(columns=["step", "time_s"]).iloc[0], torques, with_views, trial=trial,
                           evaluation=True, seed=int(read_setting(run, "experiment/seed")))
-    return episode._replace(images=episode.images[:len(torques)], torques=torques)
+    return episode._replace(images=episode.images[:len(torques)])
