@@ -65,6 +65,10 @@ Ddm::Ddm(ModelOptions options, int image_size, int torque_dim, Pca pca, Eigen::V
   requireFinite("PCA basis", pca_.basis);
   requireFinite("mean image", pca_.mean);
   requireFinite("PCA variances", pca_.variance);
+  if (!(pca_.brightness >= 0.0F) || !std::isfinite(pca_.brightness)) {
+    throw std::invalid_argument("model: the brightness of images must be >= 0 and finite, got " +
+                                std::to_string(pca_.brightness) + kRemedy);
+  }
   if (!(pca_.scale > 0.0F) || !std::isfinite(pca_.scale)) {
     throw std::invalid_argument("model: the scale of PCA must be > 0 and finite, got " +
                                 std::to_string(pca_.scale) + kRemedy);

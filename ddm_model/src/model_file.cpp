@@ -16,7 +16,7 @@ namespace {
 
 constexpr char kMagic[] = "DDMMODEL";
 constexpr size_t kMagicSize = sizeof(kMagic) - 1;
-constexpr std::uint32_t kVersion = 7;
+constexpr std::uint32_t kVersion = 8;
 constexpr size_t kHeaderSize = kMagicSize + 4 + 8 + 4;
 
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "model files are little-endian");
@@ -86,7 +86,7 @@ struct Content {
   int image_size = 0, torque_dim = 0;
   ModelInfo info;
   std::vector<float> support_states;
-  float scale = 0.0F;
+  float brightness = 0.0F, scale = 0.0F;
   std::vector<float> mean, basis;
   std::vector<double> variance, theta;
   Image goal;
@@ -101,7 +101,7 @@ struct Content {
     each(image_size, torque_dim);
     each(info.seed, info.trial, info.frames, info.v_r, info.v_p, info.feature_spread);
     each(support_states, info.config);
-    each(scale, mean, basis, variance, theta, goal);
+    each(brightness, scale, mean, basis, variance, theta, goal);
   }
 };
 
@@ -118,6 +118,7 @@ Content contentOf(const Ddm& model) {
   content.torque_dim = model.torqueDim();
   content.info = model.info();
   content.support_states = valuesOf(model.info().support_states);
+  content.brightness = model.pca().brightness;
   content.scale = model.pca().scale;
   content.mean = valuesOf(model.pca().mean);
   content.basis = valuesOf(model.pca().basis);
@@ -129,7 +130,8 @@ Content contentOf(const Ddm& model) {
 
 /// @throws std::exception if the content is invalid
 Ddm modelOf(Content content) {
-  const ModelOptions& options = content.options;
+  ModelOptions& options = content.options;
+  options.normalise_brightness = content.brightness > 0.0F;
   ModelInfo& info = content.info;
   for (const std::string& problem : options.problems()) throw std::runtime_error(problem);
   if (content.decoder_widths != options.decoderWidths()) {
@@ -162,6 +164,7 @@ Ddm modelOf(Content content) {
     throw std::runtime_error("the sizes of its PCA do not fit");
   }
   Pca pca;
+  pca.brightness = content.brightness;
   pca.scale = content.scale;
   pca.blur = Blur(content.image_size, options.blur);
   pca.mean = Eigen::Map<const Eigen::VectorXf>(content.mean.data(), num_pixels);

@@ -18,22 +18,52 @@ constexpr int kMaxSweeps = 30;
 constexpr double kVarianceTolerance = 1e-5;
 constexpr Eigen::Index kBlock = 256;  // images that are converted to float at a time
 constexpr float kWhite = 255.0F;
+constexpr float kMaxGain = 4.0F;  // the noise of a dark image must not look like the plant
+
+using Bytes = Eigen::Map<const Eigen::Matrix<std::uint8_t, Eigen::Dynamic, 1>>;
+
+/// @return root mean square of an image [grey]
+template <class Pixels>
+float brightnessOf(const Pixels& pixels) {
+  const double mean = pixels.template cast<double>().squaredNorm() / pixels.size();
+  return static_cast<float>(std::sqrt(mean)) / kWhite;
+}
+
+/// @param brightness  root mean square that the image gets [grey]; 0: it does not change
+/// @return            factor by which its grey values are multiplied
+template <class Pixels>
+float gainOf(const Pixels& pixels, float brightness) {
+  if (brightness == 0.0F) return 1.0F;
+  return std::min(kMaxGain, brightness / brightnessOf(pixels));
+}
 
 Eigen::MatrixXf orthonormalised(const Eigen::MatrixXf& columns) {
   const Eigen::HouseholderQR<Eigen::MatrixXf> qr(columns);
   return qr.householderQ() * Eigen::MatrixXf::Identity(columns.rows(), columns.cols());
 }
 
-/// The matrix K [D x M] of all images of a data set, the goal image last: grey values minus their
-/// mean, blurred. K is never stored; blocks of its columns are computed when needed. The blur is
+/// The matrix K [D x M] of all images of a data set, the goal image last: grey values times their
+/// gain minus the mean, blurred. K is never stored; blocks of its columns are computed when needed. The blur is
 /// linear, and is applied to the few columns that K is multiplied with.
 class CentredImages {
  public:
-  CentredImages(const DataSet& data, const Blur& blur) : data_(data), blur_(blur) {
+  CentredImages(const DataSet& data, const Blur& blur, bool normalise_brightness)
+      : data_(data), blur_(blur) {
+    const auto num_images = static_cast<double>(data.numImages());
+    if (normalise_brightness) {
+      double sum = 0.0;
+      for (Eigen::Index i = 0; i < data.numImages(); ++i) sum += brightnessOf(bytes(i));
+      brightness_ = static_cast<float>(sum / num_images);
+    }
     Eigen::VectorXd sum = Eigen::VectorXd::Zero(data.numPixels());
-    for (Eigen::Index i = 0; i < data.numImages(); ++i) sum += bytes(i).cast<double>();
-    mean_ = (sum / static_cast<double>(data.numImages())).cast<float>();
+    for (Eigen::Index i = 0; i < data.numImages(); ++i) {
+      sum += gainOf(bytes(i), brightness_) * bytes(i).cast<double>();
+    }
+    mean_ = (sum / num_images).cast<float>();
   }
+
+  /// @return mean of the images' root mean squares [grey]; 0: all gains are 1
+  float brightness() const { return brightness_; }
 
   /// @return mean of the blurred images  [D]
   Eigen::VectorXf mean() const {
@@ -52,7 +82,8 @@ class CentredImages {
     for (Eigen::Index begin = 0; begin < data_.numImages(); begin += kBlock) {
       const Eigen::Index size = std::min(kBlock, data_.numImages() - begin);
       for (Eigen::Index i = 0; i < size; ++i) {
-        block.col(i) = bytes(begin + i).cast<float>() - mean_;
+        const Bytes pixels = bytes(begin + i);
+        block.col(i) = gainOf(pixels, brightness_) * pixels.cast<float>() - mean_;
       }
       scores.topRows(size).noalias() = block.leftCols(size).transpose() * columns;
       product.noalias() += block.leftCols(size) * scores.topRows(size);
@@ -62,12 +93,11 @@ class CentredImages {
   }
 
  private:
-  Eigen::Map<const Eigen::Matrix<std::uint8_t, Eigen::Dynamic, 1>> bytes(Eigen::Index i) const {
-    return {data_.image(i).data(), data_.numPixels()};
-  }
+  Bytes bytes(Eigen::Index i) const { return {data_.image(i).data(), data_.numPixels()}; }
 
   const DataSet& data_;
   const Blur& blur_;
+  float brightness_ = 0.0F;
   Eigen::VectorXf mean_;  // of the images before the blur
 };
 
@@ -88,6 +118,9 @@ Blur::Blur(int image_size, double std) {
 
 Eigen::MatrixXf Pca::project(const Eigen::Ref<const ImageMatrix>& pixels) const {
   Eigen::MatrixXf images = pixels.cast<float>() / kWhite;
+  for (Eigen::Index i = 0; i < images.cols(); ++i) {
+    images.col(i) *= gainOf(pixels.col(i), brightness);
+  }
   blur.apply(&images);
   return scale * (basis.transpose() * (images.colwise() - mean));
 }
@@ -105,7 +138,7 @@ Eigen::MatrixXf Pca::reconstruct(const Eigen::Ref<const Eigen::MatrixXf>& scores
   return (basis * (scores / scale)).colwise() + mean;
 }
 
-Projection::Projection(const Pca& pca) {
+Projection::Projection(const Pca& pca) : brightness_(pca.brightness) {
   Eigen::MatrixXd filters = pca.basis.cast<double>();
   offset_ = pca.scale * (filters.transpose() * pca.mean.cast<double>());
   pca.blur.applyTransposed(&filters);
@@ -113,12 +146,12 @@ Projection::Projection(const Pca& pca) {
 }
 
 Eigen::VectorXd Projection::operator()(const Image& image) const {
-  const Eigen::Map<const Eigen::Matrix<std::uint8_t, Eigen::Dynamic, 1>> pixels(
-      image.data(), static_cast<Eigen::Index>(image.size()));
-  return filters_ * pixels.cast<double>() - offset_;
+  const Bytes pixels(image.data(), static_cast<Eigen::Index>(image.size()));
+  return gainOf(pixels, brightness_) * (filters_ * pixels.cast<double>()) - offset_;
 }
 
-Pca fitPca(const DataSet& data, int dim, const Blur& blur, const std::function<void()>& check) {
+Pca fitPca(const DataSet& data, int dim, const Blur& blur, bool normalise_brightness,
+           const std::function<void()>& check) {
   const Eigen::Index num_images = data.numImages();
   if (data.numPixels() < dim) {
     throw std::invalid_argument("PCA to model/pca_dim = " + std::to_string(dim) + " of images of " +
@@ -130,8 +163,9 @@ Pca fitPca(const DataSet& data, int dim, const Blur& blur, const std::function<v
                                 std::to_string(num_images) +
                                 ": record more frames or lower model/pca_dim");
   }
-  const CentredImages images(data, blur);
+  const CentredImages images(data, blur, normalise_brightness);
   Pca pca;
+  pca.brightness = images.brightness();
   pca.blur = blur;
   pca.mean = images.mean() / kWhite;
 

@@ -63,7 +63,8 @@ TrainingResult trainUnlessCancelled(const DataSet& data, const ModelOptions& mod
   const auto check = [&] {
     if (callback && !callback(TrainingProgress())) throw Cancelled();
   };
-  const Pca pca = fitPca(data, model.pca_dim, Blur(data.imageSize(), model.blur), check);
+  const Pca pca = fitPca(data, model.pca_dim, Blur(data.imageSize(), model.blur),
+                         model.normalise_brightness, check);
   const TrainingData<float> scores = makeTrainingData(data, pca);
   const double squared_scale = 1.0 / (static_cast<double>(pca.scale) * pca.scale);
 

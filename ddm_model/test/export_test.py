@@ -32,7 +32,7 @@ def make(tmp_path_factory):
 
 
 @pytest.mark.parametrize("model_options", [
-    "", ", blur: 1.5, order: 3, predictor_widths: [5, 3]",
+    "", ", normalise_brightness: true, blur: 1.5, order: 3, predictor_widths: [5, 3]",
     ", order: 3, predictor: gp"])
 def test_it_encodes_decodes_and_predicts_as_the_model_does(model_options, tmp_path):
     made = Made(tmp_path, model_options)

@@ -14,7 +14,7 @@ class SumModel:
     """A feature is the one before it and the torque; an image has one pixel, y = z / 10."""
 
     options = {"order": 3}
-    arrays = {"image_size": 1, "blur": np.eye(1)}
+    arrays = {"image_size": 1, "brightness": 0.0, "blur": np.eye(1)}
 
     @staticmethod
     def roll_out(features, torques):
@@ -32,7 +32,7 @@ def test_errors_of_images_are_those_of_each_image_and_shares_of_components_make_
     images, reconstructions = random.randint(0, 256, (2, NUM_IMAGES, NUM_PIXELS)).astype(np.uint8)
     y = images / 255.0
     basis = np.linalg.svd(y - y.mean(axis=0))[2][:3].T.astype(np.float32)
-    arrays = {"image_size": SIZE, "blur": np.eye(SIZE), "pca_mean": y.mean(axis=0).astype(np.float32), "pca_basis": basis}
+    arrays = {"image_size": SIZE, "brightness": 0.0, "blur": np.eye(SIZE), "pca_mean": y.mean(axis=0).astype(np.float32), "pca_basis": basis}
     errors = image_errors(arrays, images, reconstructions)
     for rms, other in ((errors.reconstruction_rms, reconstructions / 255.0), (errors.mean_rms, arrays["pca_mean"])):
         np.testing.assert_allclose(rms, np.sqrt(np.mean((y - other) ** 2, axis=1)), rtol=1e-12)

@@ -57,11 +57,13 @@ TEST(ModelFile, KeepsEveryOptionALimitForEachMotorAndSupportStates) {
   const Ddm one = toyModel();
   ModelOptions options = one.options();
   options.max_torque = {4.0, 2.0};
+  options.normalise_brightness = true;
   options.blur = 1.5;
   options.order = 3;
   ModelInfo info = one.info();
   info.support_states = testing::randomMatrix(3 * 2 + 2 * 2, 9, 5).cast<float>();
   Pca pca = one.pca();
+  pca.brightness = 0.2F;
   pca.blur = Blur(one.imageSize(), options.blur);
   const Eigen::Index num_params = Networks<double>(options, 2).numParams();
   const Ddm model(options, one.imageSize(), 2, pca, testing::randomMatrix(num_params, 1, 4),
@@ -70,6 +72,7 @@ TEST(ModelFile, KeepsEveryOptionALimitForEachMotorAndSupportStates) {
   const Ddm back = deserialiseModel(bytes, "memory");
   EXPECT_EQ(back.options().max_torque, options.max_torque);
   EXPECT_EQ(back.predictionModel().maxTorque(), Eigen::Vector2d(4.0, 2.0));
+  EXPECT_TRUE(back.options().normalise_brightness);
   EXPECT_EQ(back.options().blur, options.blur);
   EXPECT_EQ(back.options().order, 3);
   EXPECT_EQ(back.info().support_states, info.support_states);
@@ -115,10 +118,10 @@ TEST(ModelFile, AnyByteThatIsDamagedIsNoticed) {
 
 TEST(ModelFile, AnotherVersionIsRefusedWithBothVersionsAndTheRemedy) {
   std::string bytes = serialiseModel(toyModel());
-  for (const char version : {6, 8}) {
+  for (const char version : {7, 9}) {
     bytes[kVersionAt] = version;
     EXPECT_TRUE(
-        isRefused(bytes, {"version " + std::to_string(version), "reads version 7", "train it"}));
+        isRefused(bytes, {"version " + std::to_string(version), "reads version 8", "train it"}));
   }
 }
 

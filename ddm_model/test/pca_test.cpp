@@ -156,6 +156,28 @@ TEST(Projection, ComputesTheScoresOfSingleImagesInDouble) {
             1e-4 * scores.norm());  // in float
 }
 
+TEST(Pca, GivesAllImagesTheSameBrightnessButAmplifiesADarkImageAtMostFourTimes) {
+  const DataSet data = twoBlobs(80, 12, 3);
+  const auto scaled = [](Image image, int divisor) {
+    for (std::uint8_t& k : image) k = static_cast<std::uint8_t>(k / divisor);
+    return image;
+  };
+  const Pca pca = fitPca(data, 6, Blur(12, 1.5), /*normalise_brightness=*/true);
+  const Eigen::MatrixXd y = data.pixels(0, data.numImages()).cast<double>() / 255.0;
+  EXPECT_NEAR(pca.brightness, (y.colwise().norm() / 12.0).mean(), 1e-6);  // root mean squares
+  const Projection projection(pca);
+  const Eigen::MatrixXf scores = pca.project(data);
+  for (Eigen::Index i = 0; i < data.numFrames(); ++i) {
+    const Eigen::VectorXd bright = projection(data.image(i));
+    EXPECT_LT((scores.col(i).cast<double>() - bright).norm(), 1e-4 * scores.norm());
+    const double half = (projection(scaled(data.image(i), 2)) - bright).norm();
+    EXPECT_LT(half, 0.05);  // grey values are rounded
+    const double sixteenth = (projection(scaled(data.image(i), 16)) - bright).norm();
+    EXPECT_GT(sixteenth, 10.0 * half);
+  }
+  EXPECT_TRUE(projection(Image(144, 0)).allFinite());
+}
+
 TEST(Pca, RefusesTooFewImagesTooFewPixelsAndImagesThatAreAllTheSame) {
   const auto refuses = [](const DataSet& data, int dim, const std::vector<std::string>& parts) {
     return throwsNaming<std::invalid_argument>([&] { fitPca(data, dim); }, parts);

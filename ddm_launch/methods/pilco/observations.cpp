@@ -165,7 +165,8 @@ class PcaObservation : public Observation {
       throw std::runtime_error(
           "the bags hold no goal image, which tells the goal: record one on goal_image");
     }
-    const Pca pca = fitPca(data, options_.pca_dim, Blur(data.imageSize(), options_.blur));
+    const Pca pca = fitPca(data, options_.pca_dim, Blur(data.imageSize(), options_.blur),
+                           options_.normalise_brightness);
     projection_ = Projection(pca);
     const Eigen::MatrixXd Z = pca.project(data).leftCols(data.numFrames()).cast<double>();
     return {Z, imageTask(Z, data.segments(), observe(data.goal()))};

@@ -9,10 +9,11 @@ namespace ddm {
 
 /// Block `model`: the architecture. The defaults are those of the paper (Sec. 4).
 struct ModelOptions {
-  double blur = 0.0;    ///< std of the Gaussian blur of all images [pixels]
-  int pca_dim = 50;     ///< principal components; input of the encoder [-]
-  int feature_dim = 2;  ///< dim z [-]
-  int order = 2;        ///< n, past features and torques in the input of f [-]
+  bool normalise_brightness = false;  ///< whether all images get the same root mean square
+  double blur = 0.0;                  ///< std of the Gaussian blur of all images [pixels]
+  int pca_dim = 50;                   ///< principal components; input of the encoder [-]
+  int feature_dim = 2;                ///< dim z [-]
+  int order = 2;                      ///< n, past features and torques in the input of f [-]
   std::vector<int> encoder_widths = {25, 12, 6};  ///< hidden layers of g^-1; g mirrors them
   /// "network"; "gp": f sees differences of features and predicts the change of the feature, and
   /// after the training a Gaussian process replaces the network in f.
@@ -23,6 +24,7 @@ struct ModelOptions {
 
   template <class Visitor>
   void visit(Visitor& visitor) {
+    visitor("normalise_brightness", normalise_brightness);
     visitor("blur", blur);
     visitor("pca_dim", pca_dim);
     visitor("feature_dim", feature_dim);

@@ -53,11 +53,16 @@ class Blur {
 
 /// PCA: orthonormal basis of the leading principal components (paper, Sec. 4).
 ///
-///   score = scale * basis^T (blur(y) - mean),      y_hat = mean + basis * score / scale
+///   score = scale * basis^T (blur(gain y) - mean),      y_hat = mean + basis * score / scale
 ///
 /// All scores have the same scale, which preserves distances between images. It gives the leading
 /// score a standard deviation of 1.
+///
+/// Deviation: with a brightness > 0, the gain of an image gives it this root mean square. Brighter
+/// or darker light, and a camera that changes its exposure, then change neither scores nor
+/// features.
 struct Pca {
+  float brightness = 0.0F;   ///< root mean square of each image [grey]; 0: the gain is 1
   Blur blur;                 ///< blur applied to every image
   Eigen::VectorXf mean;      ///< mean of the blurred images             [D]
   Eigen::MatrixXf basis;     ///< orthonormal columns, leading one first    [D x pca_dim]
@@ -78,7 +83,7 @@ struct Pca {
 };
 
 /// PCA of one image in double precision, because the networks may magnify a rounding error a
-/// hundred times. Blur, mean and basis form one affine map of the pixels.
+/// hundred times. Blur, mean and basis form one affine map of the pixels after the gain.
 class Projection {
  public:
   Projection() = default;  ///< invalid until a projection is assigned
@@ -89,6 +94,7 @@ class Projection {
   Eigen::VectorXd operator()(const Image& image) const;
 
  private:
+  float brightness_ = 0.0F;
   Eigen::MatrixXd filters_;  ///< scale / 255 (blurred basis)^T  [pca_dim x D]
   Eigen::VectorXd offset_;   ///< scale basis^T mean             [pca_dim]
 };
@@ -103,10 +109,11 @@ class Projection {
 /// @param data   at least dim + 1 images
 /// @param dim    number of components
 /// @param blur   blur applied to every image
+/// @param normalise_brightness  whether each image gets the mean of the images' root mean squares
 /// @param check  (optional) called before each sweep; may throw to end the iteration
 /// @throws std::invalid_argument if there are fewer than dim pixels or too few images, or if all
 ///         images are equal; also every exception of check
 Pca fitPca(const DataSet& data, int dim, const Blur& blur = Blur(),
-           const std::function<void()>& check = nullptr);
+           bool normalise_brightness = false, const std::function<void()>& check = nullptr);
 
 }  // namespace ddm

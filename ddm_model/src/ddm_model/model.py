@@ -7,7 +7,8 @@ import zlib
 import numpy as np
 
 MAGIC, HEADER = b"DDMMODEL", "<IQI"  # after MAGIC: version, size of the content [bytes], CRC-32
-VERSION = 7  # version of the file format
+VERSION = 8  # version of the file format
+MAX_GAIN = 4.0  # largest factor that changes the brightness of an image, as in pca.cpp
 
 
 class ModelFileError(OSError, ValueError):
@@ -88,8 +89,13 @@ def _layers(theta, widths, name):
     return arrays, theta
 
 
-def blurred(arrays, y):
-    """Blurs images y as the model with these arrays does before it encodes them  [N x D]."""
+def preprocessed(arrays, y):
+    """Gives images y the brightness and the blur that the model with these arrays gives them before it encodes them
+    [N x D]."""
+    if arrays["brightness"] > 0.0:
+        with np.errstate(divide="ignore"):  # a black image gets the largest gain
+            gain = arrays["brightness"] / np.sqrt(np.mean(np.square(y), axis=1, keepdims=True))
+        y = np.minimum(MAX_GAIN, gain) * y
     blur, size = arrays["blur"], int(arrays["image_size"])
     if np.array_equal(blur, np.eye(size)):
         return y
@@ -137,7 +143,8 @@ class Model:
         arrays = {"image_size": self.image_size, "torque_dim": self.torque_dim,
                   "feature_dim": options["feature_dim"], "order": options["order"],
                   "max_torque": max_torque[0] if max_torque.size == 1 else max_torque,
-                  "blur": _blur(self.image_size, options["blur"]), "pca_scale": float(reader.number("<f4")),
+                  "blur": _blur(self.image_size, options["blur"]), "brightness": float(reader.number("<f4")),
+                  "pca_scale": float(reader.number("<f4")),
                   "pca_mean": reader.array("<f4"), "pca_basis": reader.array("<f4"),
                   "pca_variance": reader.array("<f8")}
         arrays["pca_basis"] = arrays["pca_basis"].reshape(options["pca_dim"], -1).T
@@ -188,7 +195,7 @@ class Model:
         if images.size != len(images) * self.image_size ** 2:
             raise ValueError("images must have %d x %d pixels, got an array %s: crop and resize them" % (
                 self.image_size, self.image_size, images.shape))
-        y = blurred(self.arrays, images.reshape(len(images), -1) / 255.0)
+        y = preprocessed(self.arrays, images.reshape(len(images), -1) / 255.0)
         scores = self.arrays["pca_scale"] * ((y - self.arrays["pca_mean"]) @ self.arrays["pca_basis"])
         return self._network("encoder", scores, last_linear=False)
 

@@ -9,7 +9,7 @@ import numpy as np
 import roslib.packages
 import yaml
 
-from ddm_model.model import blurred
+from ddm_model.model import preprocessed
 
 BLOCK_BYTES = 1 << 23  # images that are processed in one block [bytes]
 MAX_STARTS = 1000  # largest number of predictions, which limits the time to seconds
@@ -82,7 +82,7 @@ def image_errors(arrays, images, reconstructions):
     own_mean = images.mean(axis=0) / 255.0
     for block in blocks(*images.shape):
         raw, y_hat = images[block] / 255.0, reconstructions[block] / 255.0
-        y = blurred(arrays, raw)
+        y = preprocessed(arrays, raw)
         coordinates, kept = kept_by_pca(arrays, y)
         pairs = (y, arrays["pca_mean"]), (y, kept), (y, y_hat), (raw, own_mean)
         squares.append([np.mean(np.square(image - other), axis=1) for image, other in pairs])
@@ -122,9 +122,9 @@ def prediction_errors(model, images, starts, predicted, blind):
     """
     squares, num_pixels = np.zeros((3, predicted.shape[1] - 1)), images[0].size
     for block in blocks(len(starts), num_pixels):
-        stays = blurred(model.arrays, images[starts[block]].reshape(-1, num_pixels) / 255.0)
+        stays = preprocessed(model.arrays, images[starts[block]].reshape(-1, num_pixels) / 255.0)
         for k in range(1, predicted.shape[1]):
-            truth = blurred(model.arrays, images[starts[block] + k].reshape(-1, num_pixels) / 255.0)
+            truth = preprocessed(model.arrays, images[starts[block] + k].reshape(-1, num_pixels) / 255.0)
             shown = grey(model.decode(predicted[block, k])) / 255.0, stays, grey(model.decode(blind[block, k])) / 255.0
             squares[:, k - 1] += [np.sum(np.square(image.reshape(truth.shape) - truth)) for image in shown]
     return np.sqrt(squares / (len(starts) * num_pixels))

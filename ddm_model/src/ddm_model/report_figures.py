@@ -11,7 +11,7 @@ from matplotlib.ticker import MaxNLocator  # noqa: E402
 import numpy as np  # noqa: E402
 
 from ddm_model.feature_grid import FeatureGrid  # noqa: E402
-from ddm_model.model import blurred  # noqa: E402
+from ddm_model.model import preprocessed  # noqa: E402
 from ddm_model.model_data import kept_by_pca  # noqa: E402
 
 # Colours of the Okabe-Ito set, which colour-blind readers can distinguish. Dashes and shapes differ, too.
@@ -72,7 +72,7 @@ def draw_reconstructions(data):
     """Draws some images, their projections on the principal components, and their reconstructions."""
     shown = np.unique(np.arange(RECONSTRUCTIONS) * len(data.images) // RECONSTRUCTIONS)
     images = data.images[shown]
-    y = blurred(data.model.arrays, images.reshape(len(shown), -1) / 255.0)
+    y = preprocessed(data.model.arrays, images.reshape(len(shown), -1) / 255.0)
     kept = kept_by_pca(data.model.arrays, y)[1].reshape(images.shape)
     return draw_rows([images, 255.0 * kept, data.reconstructions[shown]], ["image", "PCA", "features"],
                      ["frame %d" % frame for frame in shown])
