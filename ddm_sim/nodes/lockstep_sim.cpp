@@ -7,10 +7,10 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <utility>
 
+#include "ddm_common/option_checks.h"
 #include "ddm_common/param_value.h"
 #include "ddm_common/topic_peers.h"
 #include "sim_node.h"
@@ -148,11 +148,7 @@ class LockstepSim : public SimNode {
     tell();
   }
 
-  std::string frameName() const {
-    std::ostringstream name;
-    name << "frame " << frame_ << " (stamp " << now() << ")";
-    return name.str();
-  }
+  std::string frameName() const { return textOf("frame ", frame_, " (stamp ", now(), ")"); }
 
   ros::Time now() const { return ros::Time().fromNSec(now_ns_); }
 

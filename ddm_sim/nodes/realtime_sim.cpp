@@ -70,7 +70,6 @@ class RealtimeSim : public SimNode {
     timer_.start();
     const ros::Time stamp = wallNow();
     publishGoal(stamp);
-    settleAnswer();
     showImage(stamp);
     ROS_INFO("%s %u starts in real time", request.evaluation ? "evaluation" : "trial",
              request.trial);
@@ -122,16 +121,14 @@ class RealtimeSim : public SimNode {
     answer_.torque.clear();
   }
 
+  /// Publishes the torque that acted after the last image, because the time for its answer is over.
+  /// Then publishes the next image.
   void showImage(const ros::Time& stamp) {
+    if (shown_) publishApplied(answer_);
     shown_ = publishImage(stamp);
     answer_ = ddm_msgs::Torque();
     answer_.header.stamp = stamp;
     publishGroundTruth();
-  }
-
-  /// Publishes the torque that acted after the last image, when the time for its answer is over.
-  void settleAnswer() {
-    if (shown_) publishApplied(answer_);
   }
 
   void onTick(const ros::SteadyTimerEvent& /*event*/) {
@@ -140,7 +137,6 @@ class RealtimeSim : public SimNode {
       timer_.stop();
       return;
     }
-    settleAnswer();
     showImage(wallNow());
   }
 

@@ -1,6 +1,7 @@
 // robot_node: the services that enable the motors, take the goal image and reset the robot.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_common/image_codec.h>
+#include <ddm_common/option_checks.h>
 #include <ddm_common/topic_peers.h>
 #include <ddm_common/waiting.h>
 
@@ -10,7 +11,6 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <sstream>
 #include <stdexcept>
 
 #include "robot_node.h"
@@ -128,10 +128,9 @@ bool RobotNode::onReset(ddm_msgs::Reset::Request& /*request*/,
     return true;
   }
   if (!options_.holdsForAStep()) {
-    std::ostringstream text;
-    text << "robot/max_hold is " << options_.max_hold << " s and robot/dt is " << options_.dt
-         << " s, so that no torque would act for a whole step: set robot/max_hold to at least dt";
-    response.message = text.str();
+    response.message = textOf(
+        "robot/max_hold is ", options_.max_hold, " s and robot/dt is ", options_.dt,
+        " s, so that no torque would act for a whole step: set robot/max_hold to at least dt");
     return true;
   }
   const ros::SteadyTime deadline =
@@ -174,11 +173,11 @@ std::string RobotNode::stepProblem() {
   const double step = picker_.step();  // 0 if the step is not known yet
   const double error = std::abs(step - options_.dt);
   if (step == 0.0 || error <= kStepTolerance * options_.dt) return "";
-  std::ostringstream text;
-  text << "the camera's rate does not fit: images are " << step << " s apart where robot/dt is "
-       << options_.dt << " s: make dt a whole multiple of the time between images";
-  if (error > kMaxStepTolerance * options_.dt) return "the trial cannot begin: " + text.str();
-  log_.warn(text.str());
+  const std::string problem =
+      textOf("the camera's rate does not fit: images are ", step, " s apart where robot/dt is ",
+             options_.dt, " s: make dt a whole multiple of the time between images");
+  if (error > kMaxStepTolerance * options_.dt) return "the trial cannot begin: " + problem;
+  log_.warn(problem);
   return "";
 }
 

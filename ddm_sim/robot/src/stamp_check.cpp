@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_robot/stamp_check.h"
 
+#include <ddm_common/option_checks.h>
+
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 namespace ddm {
 namespace {
@@ -32,32 +33,25 @@ void append(Stamp value, std::size_t max_count, std::deque<Stamp>* values) {
 std::string StampCheck::compare(Stamp clock, Stamp stamp) const {
   const Stamp age = clock - stamp;
   if (age <= dt_ && age >= -dt_) return "";
-  std::ostringstream text;
   if (stamp == Stamp(0)) {
-    text << item_ << " has no stamp, so its age is unknown: let the driver set header.stamp";
-    return text.str();
+    return item_ + " has no stamp, so its age is unknown: let the driver set header.stamp";
   }
-  text << "the " << sensor_ << "'s stamps and this machine's clock differ by "
-       << std::abs(toSeconds(age)) << " s when " << item_ << " arrives, at most " << toSeconds(dt_)
-       << " s are allowed: let the driver set the stamps, synchronise the clocks";
-  return text.str();
+  return textOf("the ", sensor_, "'s stamps and this machine's clock differ by ",
+                std::abs(toSeconds(age)), " s when ", item_, " arrives, at most ", toSeconds(dt_),
+                " s are allowed: let the driver set the stamps, synchronise the clocks");
 }
 
 std::string StampCheck::refusal(SteadyTime arrival, Stamp clock, Stamp stamp) const {
   if (!last_) return compare(clock, stamp);
   const Stamp ahead = stamp - arrival.time_since_epoch() - highest_;
-  std::ostringstream text;
-  if (ahead > dt_) {
-    text << "the " << sensor_ << "'s clock has jumped forward by " << toSeconds(ahead) << " s";
-  } else if (stamp <= *last_) {
-    text << item_ << " is stamped " << toSeconds(*last_ - stamp)
-         << " s before the one that came before it: the " << sensor_
-         << "'s clock was set back, or messages come twice or out of order";
-  } else {
-    return "";
-  }
-  text << ". Messages are refused until that clock is right, or until the next reset";
-  return text.str();
+  if (ahead <= dt_ && stamp > *last_) return "";
+  const std::string problem =
+      ahead > dt_
+          ? textOf("the ", sensor_, "'s clock has jumped forward by ", toSeconds(ahead), " s")
+          : textOf(item_, " is stamped ", toSeconds(*last_ - stamp),
+                   " s before the one that came before it: the ", sensor_,
+                   "'s clock was set back, or messages come twice or out of order");
+  return problem + ". Messages are refused until that clock is right, or until the next reset";
 }
 
 std::string StampCheck::take(SteadyTime arrival, Stamp clock, Stamp stamp) {

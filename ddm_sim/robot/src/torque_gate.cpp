@@ -12,11 +12,6 @@ namespace {
 constexpr char kNoListener[] =
     "no node subscribes to the efforts, so that torques cannot act: start the effort controller";
 
-bool allFinite(const std::vector<double>& values) {
-  return std::all_of(values.begin(), values.end(),
-                     [](double value) { return std::isfinite(value); });
-}
-
 }  // namespace
 
 TorqueGate::TorqueGate(const RobotOptions& options)
@@ -97,7 +92,9 @@ void TorqueGate::showImage(SteadyTime taken, Stamp stamp) {
 bool TorqueGate::takeTorque(SteadyTime now, Stamp stamp, const std::vector<double>& torque) {
   expire(now);
   if (!armed()) return false;
-  if (torque.size() != max_torque_.size() || !allFinite(torque)) {
+  const bool is_finite =
+      std::all_of(torque.begin(), torque.end(), [](double value) { return std::isfinite(value); });
+  if (torque.size() != max_torque_.size() || !is_finite) {
     stop("a torque must be " + std::to_string(max_torque_.size()) +
          " finite number(s) [N m], one for each motor, got " + listText(torque));
     return false;
@@ -122,7 +119,7 @@ bool TorqueGate::takeTorque(SteadyTime now, Stamp stamp, const std::vector<doubl
   last_torque_ = now;
   const std::vector<double> before = target_;
   for (std::size_t i = 0; i < torque.size(); ++i) {
-    target_[i] = std::max(-max_torque_[i], std::min(max_torque_[i], torque[i]));
+    target_[i] = std::clamp(torque[i], -max_torque_[i], max_torque_[i]);
   }
   if (target_ != before) joints_.torqueChanges();
   return true;

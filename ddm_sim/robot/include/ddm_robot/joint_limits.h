@@ -70,14 +70,9 @@ class JointLimits {
   struct Joint {
     std::string name;
     StampCheck stamps{toSeconds(kSilence), "joint_states driver", "a joint state"};
-    std::string refusal;  // why the stamp of the last report was refused
-    bool has_position_limits = false;
-    bool has_speed_limit = false;
-    double lower = 0.0;  // [rad or m]
-    double upper = 0.0;
-    double speed_limit = 0.0;  // [rad/s or m/s]
-    SteadyTime heard{};        // time of the last measurement
-    double position = 0.0;     // in the last report [rad or m]
+    std::string refusal;    // why the stamp of the last report was refused
+    SteadyTime heard{};     // time of the last measurement
+    double position = 0.0;  // in the last report [rad or m]
     int torques_since_change = 0;
     std::string reporter;    // node of the last report
     std::string rival;       // the other node that reported the joint
@@ -86,9 +81,10 @@ class JointLimits {
   };
 
   static std::string findRival(Joint* joint, SteadyTime now, const std::string& reporter);
-  static void take(const JointReport& report, std::size_t index, Joint* joint);
-  static std::string check(const Joint& joint, std::size_t index, const JointReport& report);
+  std::string check(std::size_t joint, std::size_t index, const JointReport& report) const;
 
+  std::vector<std::vector<double>> position_limits_;  // [lower, upper] of each joint, or empty
+  std::vector<double> speed_limit_;                   // of each joint, or empty
   bool named_;
   std::vector<Joint> joints_;
   std::string unfit_;  // why the last report without names cannot be used

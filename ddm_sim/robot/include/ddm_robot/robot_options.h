@@ -46,8 +46,6 @@ struct RobotOptions {
   /// torque that acted for the whole step, and the model cannot be trained.
   bool holdsForAStep() const { return max_hold >= 0.9 * dt; }
   int numMotors() const { return static_cast<int>(max_torque.size()); }
-
-  /// Describes each invalid value and the rule that it breaks. Empty if all values are valid.
   std::vector<std::string> problems() const;
 };
 
