@@ -48,7 +48,7 @@ void runClosedLoop(Environment* environment, std::shared_ptr<Policy> policy,
   options.max_torque =
       perMotor(configuration.mpc.max_torque, environment->plant().torqueDim(), "mpc/max_torque");
   EpsilonGreedy explorer(request.epsilon < 1.0 ? std::move(policy) : nullptr, options, id);
-  RenderedImage rendered = environment->reset(id.seed, id.trial, id.evaluation);
+  RenderedImage rendered = environment->reset(id);
   explorer.setGoal(
       decodeImage(imageMessage(environment->goalImage(), stampOf(*environment)), image_size));
   const std::string optical_frame = opticalFrame(environment->plant().cameraModel());

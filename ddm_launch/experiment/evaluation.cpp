@@ -95,7 +95,7 @@ TrialRow rowOf(const TrialId& id, const TrialOutcome& greedy, const EvaluationOp
   TrialRow row;
   row.seed = static_cast<int>(id.seed);
   row.trial = static_cast<int>(id.trial);
-  plant->setGoal(goalOf(*plant, id.seed, id.trial, id.evaluation));
+  plant->setGoal(goalOf(*plant, id));
   row.evaluation = greedy.states.empty()
                        ? evaluateFeatures(greedy.goal_distances, options)
                        : evaluate(*plant, greedy.states, greedy.torques, greedy.times);

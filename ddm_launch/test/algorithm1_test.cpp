@@ -184,12 +184,12 @@ TEST_F(ExperimentTest, AGreedyRunIsJudgedByTheGoalThatWasDrawnForIt) {
   const auto plant = testing::plantOf(testing::colourfulToy());
   testing::usePlant(plant, &configuration_);
   const std::unique_ptr<Plant> alone = plant->make();
-  driver_.state = goalOf(*alone, 7, 1, /*evaluation=*/true);
+  driver_.state = goalOf(*alone, {7, 1, /*evaluation=*/true});
   run();
   const auto rows = parseTrialsCsv(textOf(file("trials.csv")), "trials.csv");
   ASSERT_EQ(rows.size(), 3u);
   for (std::uint32_t trial = 0; trial < 3; ++trial) {
-    const double goal = goalOf(*alone, 7, trial, true)[0];
+    const double goal = goalOf(*alone, {7, trial, true})[0];
     EXPECT_EQ(rows[trial].evaluation.final_error, std::abs(driver_.state[0] - goal)) << trial;
     EXPECT_EQ(rows[trial].evaluation.success, trial == 1) << trial;
   }

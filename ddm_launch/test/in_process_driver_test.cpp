@@ -116,7 +116,7 @@ TEST_F(InProcessDriverTest, FramesAndGoalAreThoseOfTheCameraInThisRun) {
   const auto plant = makePlant(*configuration_.plant);
   Camera camera(configuration_.camera, configuration_.plant_info.dt);
   const auto capture = [&] { return camera.capture(plant->render(plant->state())); };
-  camera.begin(7, 2, false);
+  camera.begin({7, 2, false});
   EXPECT_EQ(content.data.goal(), camera.captureGoal(plant->render(plant->goal())).bytes);
   plant->setState(outcome.states[0]);
   for (Eigen::Index t = 0; t < 40; ++t) {
@@ -150,7 +150,7 @@ TEST_F(InProcessDriverTest, EachRunHasAGoalOfItsOwnInItsBagWhereThePlantDrawsOne
     request_.id.trial = trial;
     request_.bag = scratch_.file(std::to_string(trial) + ".bag");
     run();
-    const Image expected = plant->render(goalOf(*plant, 7, trial, false)).bytes;
+    const Image expected = plant->render(goalOf(*plant, {7, trial, false})).bytes;
     EXPECT_EQ(bag().data.goal(), expected) << trial;
     goals.insert(expected);
   }

@@ -103,7 +103,7 @@ TEST_F(OracleTest, BringsACartToTheGoalOfEachRun) {
   const std::unique_ptr<Plant> plant = makePlant(*configuration_.plant);
   for (int trial = 0; trial < 3; ++trial) {
     const TrialOutcome outcome = greedyRun(trial);
-    plant->setGoal(goalOf(*plant, 7, static_cast<std::uint32_t>(trial), /*evaluation=*/true));
+    plant->setGoal(goalOf(*plant, {7, static_cast<std::uint32_t>(trial), /*evaluation=*/true}));
     EXPECT_NE(plant->goal(), plant->info().goal);
     EXPECT_LT(plant->goalError(outcome.states.back()), 0.02) << trial;
     EXPECT_TRUE(evaluate(*plant, outcome.states, outcome.torques).success);

@@ -30,24 +30,6 @@ namespace testing {
 
 constexpr int kToySteps = 30;
 
-/// A toy plant as the plant of a configuration.
-class ToyPlugin : public PlantPlugin {
- public:
-  explicit ToyPlugin(const ToyPlant::Traits& traits) : maker_(traits) {}
-
-  std::string type() const override { return maker_.type(); }
-  void read(ParamReader* /*reader*/) override {}
-  YAML::Node block() const override {
-    YAML::Node out;
-    out["type"] = type();
-    return out;
-  }
-  std::unique_ptr<Plant> make() const override { return maker_.make(); }
-
- private:
-  ToyMaker maker_;
-};
-
 /// Sets the plant of a configuration and all values that depend on the plant.
 inline void usePlant(std::shared_ptr<const PlantPlugin> plant, Configuration* all) {
   all->plant = std::move(plant);

@@ -6,7 +6,7 @@
 #include <image_transport/image_transport.h>
 
 #include <algorithm>
-#include <sstream>
+#include <boost/algorithm/string/join.hpp>
 #include <stdexcept>
 #include <utility>
 
@@ -74,10 +74,9 @@ void SimNode::publishGroundTruth() {
 }
 
 void SimNode::publishApplied(ddm_msgs::Torque answer) const {
-  const Eigen::VectorXd& limit = plant().info().max_torque;
   for (std::size_t i = 0; i < answer.torque.size(); ++i) {
-    const double bound = limit[static_cast<Eigen::Index>(i)];
-    answer.torque[i] = std::max(-bound, std::min(bound, answer.torque[i]));
+    const double bound = plant().info().max_torque[static_cast<Eigen::Index>(i)];
+    answer.torque[i] = std::clamp(answer.torque[i], -bound, bound);
   }
   applied_pub_.publish(answer);
 }
@@ -94,7 +93,7 @@ bool SimNode::onReset(ddm_msgs::Reset::Request& request, ddm_msgs::Reset::Respon
   std::optional<Eigen::VectorXd> start;
   if (!request.start.empty()) start = toEigen(request.start);
   try {
-    seen_ = environment_->reset(request.seed, request.trial, request.evaluation, start);
+    seen_ = environment_->reset({request.seed, request.trial, request.evaluation != 0}, start);
     response.start = beginTrial(request);
     response.goal = goal_stamp_;
     response.success = true;
@@ -114,10 +113,8 @@ void SimNode::handleTorque(const ddm_msgs::Torque& message, const std::string& p
   const Eigen::VectorXd torque = toEigen(message.torque);
   const std::string rule = brokenRule(torque);
   if (rule.empty()) return takeTorque(message, torque, publisher);
-  std::ostringstream reason;
-  reason << "torque refused: " << publisher << " published " << fewNumbers(torque) << " on "
-         << topic << ", " << rule;
-  torqueRefused(message.header.stamp, reason.str());
+  torqueRefused(message.header.stamp, "torque refused: " + publisher + " published " +
+                                          fewNumbers(torque) + " on " + topic + ", " + rule);
 }
 
 /// @return the rule that the torque breaks; empty if the torque is valid
@@ -126,16 +123,16 @@ std::string SimNode::brokenRule(const Eigen::VectorXd& torque) const {
     return "only one node may drive the motor: stop the others, " +
            describePublishers(torque_sub_.getTopic());
   }
-  std::ostringstream rule;
   const PlantInfo& info = plant().info();
   if (torque.size() != info.torqueDim() || !torque.allFinite()) {
-    rule << "it must be " << info.torqueDim() << " finite number(s):";
-    for (const std::string& name : info.torque_names) rule << ' ' << name;
-  } else if ((torque.cwiseAbs() - kRubbish * info.max_torque).maxCoeff() > 0.0) {
-    rule << "it must lie within +-" << fewNumbers(kRubbish * info.max_torque) << ", which is "
-         << kRubbish << " times what the motor can do: check the units";
+    return "it must be " + std::to_string(info.torqueDim()) +
+           " finite number(s): " + boost::algorithm::join(info.torque_names, " ");
   }
-  return rule.str();
+  if ((torque.cwiseAbs() - kRubbish * info.max_torque).maxCoeff() > 0.0) {
+    return "it must lie within +-" + fewNumbers(kRubbish * info.max_torque) +
+           ", which is 1000 times what the motor can do: check the units";
+  }
+  return "";
 }
 
 }  // namespace ddm

@@ -63,9 +63,9 @@ class PythonEnvironment {
                   const py::object& start) {
     std::optional<Eigen::VectorXd> state;
     if (!start.is_none()) state = vectorOf(start, "start", environment_->plant().stateDim());
-    const RenderedImage image =
-        environment_->reset(wholeOf<std::uint64_t>(seed, "seed"),
-                            wholeOf<std::uint32_t>(trial, "trial"), evaluation, state);
+    const TrialId id{wholeOf<std::uint64_t>(seed, "seed"), wholeOf<std::uint32_t>(trial, "trial"),
+                     evaluation};
+    const RenderedImage image = environment_->reset(id, state);
     evaluation_ = evaluation;
     goal_ = arrayOf(environment_->goalImage());
     goal_.attr("setflags")(false);  // all dictionaries `info` share it

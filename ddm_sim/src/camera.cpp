@@ -3,7 +3,6 @@
 #include "ddm_sim/camera.h"
 
 #include <ddm_common/option_checks.h>
-#include <ddm_common/random_stream.h>
 
 #include <algorithm>
 #include <cmath>
@@ -93,12 +92,12 @@ std::vector<std::string> CameraOptions::problems() const {
 }
 
 Camera::Camera(const CameraOptions& options, double dt) : options_(checked(options)), dt_(dt) {
-  begin(0, 0, false);
+  begin(TrialId());
 }
 
-void Camera::begin(std::uint64_t seed, std::uint32_t trial, bool evaluation) {
-  rng_ = randomStream({seed, trial, evaluation}, StreamRole::kCamera);
-  noise_ = randomStream({seed, trial, evaluation}, StreamRole::kNoise);
+void Camera::begin(const TrialId& id) {
+  rng_ = randomStream(id, StreamRole::kCamera);
+  noise_ = randomStream(id, StreamRole::kNoise);
   phase_ = std::uniform_real_distribution<double>(0.0, kTwoPi)(rng_);
   taken_.clear();
   frame_ = 0;

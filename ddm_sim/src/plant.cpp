@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_sim/plant.h"
 
-#include <ddm_common/random_stream.h>
+#include <ddm_common/option_checks.h>
 
 #include <algorithm>
 #include <boost/algorithm/string/join.hpp>
-#include <cmath>
 #include <set>
 #include <sstream>
 #include <stdexcept>
@@ -19,76 +18,47 @@ namespace {
 
 void requireFinite(const char* name, const Eigen::VectorXd& value, Eigen::Index size) {
   if (value.size() == size && value.allFinite()) return;
-  std::ostringstream message;
-  message << "plant: the " << name << " must be " << size << " finite number(s), got "
-          << fewNumbers(value);
-  throw std::invalid_argument(message.str());
-}
-
-/// @throws std::logic_error if draw() returned an invalid image
-void requireSoundImage(const RenderedImage& rendered) {
-  const bool sound = rendered.width >= 1 && rendered.height >= 1 &&
-                     (rendered.channels == 1 || rendered.channels == 3) &&
-                     rendered.bytes.size() == rendered.numBytes() &&
-                     (rendered.cover.empty() || rendered.cover.size() == rendered.numPixels());
-  if (sound) return;
-  std::ostringstream message;
-  message << "plant: draw() must return a rendered image of 1 or 3 channels with a byte for each, "
-             "and a "
-             "cover of none or one for each pixel, got "
-          << rendered.width << " x " << rendered.height << " x " << rendered.channels << " with "
-          << rendered.bytes.size() << " and " << rendered.cover.size() << " bytes";
-  throw std::logic_error(message.str());
+  throw std::invalid_argument(
+      textOf("plant: the ", name, " must be ", size, " finite number(s), got ", fewNumbers(value)));
 }
 
 constexpr std::size_t kMaxDim = 1000;  // the limit of model files
 
-/// The rules of makePlant() that a plant breaks.
+/// The rules of checkedPlant() that a plant breaks.
 std::vector<std::string> problemsOf(const PlantInfo& info) {
-  std::vector<std::string> problems;
-  const auto require = [&problems](bool ok, const std::string& rule, const auto& value) {
-    if (ok) return;
-    std::ostringstream problem;
-    problem << rule << ", got " << value;
-    problems.push_back(problem.str());
-  };
-  const auto quoted = [](const std::vector<std::string>& names) {
-    return "\"" + boost::algorithm::join(names, ", ") + "\"";
-  };
-  const auto requireNames = [&](const std::string& what, const std::vector<std::string>& names) {
-    require(!names.empty() && names.size() <= kMaxDim, what + " must be 1 to 1000 names",
-            names.size());
+  OptionChecks checks("PlantInfo");
+  const auto requireNames = [&checks](const char* key, const std::vector<std::string>& names) {
+    checks.require(!names.empty() && names.size() <= kMaxDim, key, "be 1 to 1000 names",
+                   names.size());
     const bool usable = std::all_of(names.begin(), names.end(), usableName) &&
                         std::set<std::string>(names.begin(), names.end()).size() == names.size();
-    require(usable, what + " must differ, and have neither blanks nor commas nor quotes",
-            quoted(names));
+    checks.require(usable, key, "differ, and have neither blanks nor commas nor quotes",
+                   "\"" + boost::algorithm::join(names, ", ") + "\"");
   };
-  const auto requireVector = [&](const std::string& what, const Eigen::VectorXd& values, int count,
-                                 const char* rule, bool (*ok)(double)) {
-    require(values.size() == count && values.allFinite(),
-            what + " must be " + std::to_string(count) + " finite number(s)", fewNumbers(values));
-    require(std::all_of(values.data(), values.data() + values.size(), ok), what + rule,
-            fewNumbers(values));
+  const auto requireVector = [&checks](const char* key, const Eigen::VectorXd& values, int count) {
+    checks.require(values.size() == count && values.allFinite(), key,
+                   "be " + std::to_string(count) + " finite number(s)", fewNumbers(values));
   };
-  const auto any = [](double) { return true; };
-  const auto positive = [](double x) { return x > 0.0 && std::isfinite(x); };
   std::vector<std::string> joints;
   for (const Joint& joint : info.joints) joints.push_back(joint.name);
   requireNames("state_names", info.state_names);
   requireNames("torque_names", info.torque_names);
   requireNames("joints", joints);
-  require(joints.size() <= info.state_names.size(),
-          "joints must be at most one for each component of the state", quoted(joints));
-  requireVector("max_torque", info.max_torque, info.torqueDim(), " must be > 0", positive);
-  requireVector("start", info.start, info.stateDim(), "", any);
-  requireVector("start_std", info.start_std, info.stateDim(), " must be >= 0",
-                [](double x) { return x >= 0.0; });
-  requireVector("goal", info.goal, info.stateDim(), "", any);
-  require(positive(info.dt), "dt must be > 0 and finite", info.dt);
-  require(positive(info.tolerance), "tolerance must be > 0 and finite", info.tolerance);
-  require(usableName(info.error_unit), "error_unit must name the unit of the error",
-          quoted({info.error_unit}));
-  return problems;
+  checks.require(joints.size() <= info.state_names.size(), "joints",
+                 "be at most one for each component of the state", joints.size());
+  requireVector("max_torque", info.max_torque, info.torqueDim());
+  requireVector("start", info.start, info.stateDim());
+  requireVector("start_std", info.start_std, info.stateDim());
+  requireVector("goal", info.goal, info.stateDim());
+  checks.require((info.max_torque.array() > 0.0).all(), "max_torque", "be > 0",
+                 fewNumbers(info.max_torque));
+  checks.require((info.start_std.array() >= 0.0).all(), "start_std", "be >= 0",
+                 fewNumbers(info.start_std));
+  checks.requirePositive("dt", info.dt);
+  checks.requirePositive("tolerance", info.tolerance);
+  checks.require(usableName(info.error_unit), "error_unit", "name the unit of the error",
+                 "\"" + info.error_unit + "\"");
+  return checks.problems();
 }
 
 }  // namespace
@@ -134,11 +104,10 @@ Eigen::VectorXd Plant::step(const Eigen::VectorXd& torque) {
                            " number(s), got " + fewNumbers(next));
   }
   if (!next.allFinite()) {
-    std::ostringstream message;
-    message << "plant " << info_.type << ": the state " << fewNumbers(state_) << " is followed by "
-            << fewNumbers(next)
-            << ", and states must be finite: use a smaller state or other plant parameters";
-    throw std::range_error(message.str());
+    throw std::range_error(
+        "plant " + info_.type + ": the state " + fewNumbers(state_) + " is followed by " +
+        fewNumbers(next) +
+        ", and states must be finite: use a smaller state or other plant parameters");
   }
   state_ = next;
   return applied;
@@ -175,8 +144,16 @@ double Plant::rewardOfStep(const Eigen::VectorXd& state, const Eigen::VectorXd& 
 RenderedImage Plant::render(const Eigen::VectorXd& state) const {
   requireFinite("state", state, stateDim());
   RenderedImage rendered = draw(state);
-  requireSoundImage(rendered);
-  return rendered;
+  const bool sound = rendered.width >= 1 && rendered.height >= 1 &&
+                     (rendered.channels == 1 || rendered.channels == 3) &&
+                     rendered.bytes.size() == rendered.numBytes() &&
+                     (rendered.cover.empty() || rendered.cover.size() == rendered.numPixels());
+  if (sound) return rendered;
+  throw std::logic_error(
+      textOf("plant: draw() must return a rendered image of 1 or 3 channels with a byte for each, "
+             "and a cover of none or one for each pixel, got ",
+             rendered.width, " x ", rendered.height, " x ", rendered.channels, " with ",
+             rendered.bytes.size(), " and ", rendered.cover.size(), " bytes"));
 }
 
 RenderedImage Plant::view(const Eigen::VectorXd& /*state*/) const {
@@ -188,13 +165,8 @@ Eigen::VectorXd Plant::visiblePosition(const Eigen::VectorXd& state) const {
   return locate(state);
 }
 
-std::mt19937_64 startStream(std::uint64_t seed, std::uint32_t trial, bool evaluation) {
-  return randomStream({seed, trial, evaluation}, StreamRole::kStart);
-}
-
-Eigen::VectorXd goalOf(const Plant& plant, std::uint64_t seed, std::uint32_t trial,
-                       bool evaluation) {
-  std::mt19937_64 stream = randomStream({seed, trial, evaluation}, StreamRole::kGoal);
+Eigen::VectorXd goalOf(const Plant& plant, const TrialId& id) {
+  std::mt19937_64 stream = randomStream(id, StreamRole::kGoal);
   return plant.drawGoal(stream);
 }
 
@@ -204,15 +176,14 @@ bool usableName(const std::string& name) {
   });
 }
 
-std::unique_ptr<Plant> makePlant(const PlantMaker& maker) {
-  std::unique_ptr<Plant> plant = maker.make();
+std::unique_ptr<Plant> checkedPlant(std::unique_ptr<Plant> plant, const std::string& type) {
   const std::vector<std::string> problems =
       plant ? problemsOf(plant->info()) : std::vector<std::string>{"it must be made, got nothing"};
   if (problems.empty()) {
-    plant->setType(maker.type());
+    plant->info_.type = type;
     return plant;
   }
-  throw std::invalid_argument("plant " + maker.type() + " breaks the rules of a plant:\n- " +
+  throw std::invalid_argument("plant " + type + " breaks the rules of a plant:\n- " +
                               boost::algorithm::join(problems, "\n- ") +
                               "\nCorrect its class: doc/your_plant.md has the rules");
 }

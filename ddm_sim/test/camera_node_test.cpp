@@ -29,7 +29,7 @@ TEST(RealtimeCamera, ShowsTheFramesOfTheLibraryAndNothingWhereOneIsLost) {
   Pendulum plant(plant_options);
   plant.setState(Eigen::Vector2d(0.3, 5.0));
   Camera camera(camera_options, plant_options.dt);
-  camera.begin(/*seed=*/7, /*trial=*/3, false);
+  camera.begin({/*seed=*/7, /*trial=*/3, false});
 
   SimClient client;
   ASSERT_TRUE(client.connect());

@@ -74,7 +74,7 @@ TEST(Camera, ShowsTheSameImagesAsEverWhereAllNuisancesAreOff) {
   Camera camera(CameraOptions(), kDt);
   EXPECT_EQ(hashOf(film(&camera, 20)), 0xa5dc86f41e3e2aafULL);
   MovingTile tile{MovingTileOptions()};
-  camera.begin(0, 0, false);
+  camera.begin({0, 0, false});
   std::vector<Bytes> frames;
   for (int step = 0; step < 20; ++step) {
     frames.push_back(captureOf(&camera, viewOf(tile)));
@@ -188,7 +188,7 @@ TEST(Camera, HasOneBackgroundForAllRuns) {
   options.clutter = 0.6;
   Camera camera(options, kDt);
   const Bytes background = captureOf(&camera, black());
-  camera.begin(7, 3, true);
+  camera.begin({7, 3, true});
   EXPECT_EQ(captureOf(&camera, black()), background);
 }
 
@@ -199,7 +199,7 @@ TEST(Camera, ShowsTheStateOfSoManyFramesAgoAndAtFirstThatOfTheFirstFrame) {
     options.delay = delay;
     Camera camera(options, kDt);
     for (int run = 0; run < 2; ++run) {  // begin() discards the images that wait for their delay
-      camera.begin(0, 0, false);
+      camera.begin({0, 0, false});
       const std::vector<Bytes> late = film(&camera, 20);
       for (int t = 0; t < 20; ++t) EXPECT_EQ(late[t], clean[std::max(0, t - delay)]) << t;
     }
@@ -213,7 +213,7 @@ TEST(Camera, LosesFramesAtTheGivenRateButNeverTheFirst) {
   const RenderedImage rod = hangingRod();
   int num_lost = 0;
   for (std::uint32_t trial = 0; trial < 200; ++trial) {
-    camera.begin(1, trial, false);
+    camera.begin({1, trial, false});
     ASSERT_TRUE(camera.capture(rod)) << trial;
     for (int t = 1; t < 100; ++t) num_lost += camera.capture(rod) ? 0 : 1;
   }
@@ -228,10 +228,10 @@ TEST(Camera, GivesTheSameImagesInTheSameRunAndOthersInAnother) {
   for (const bool evaluation : {false, true}) {
     for (const std::uint32_t trial : {0U, 1U}) {
       for (const std::uint64_t seed : {0ULL, 1ULL, 1ULL << 32}) {
-        camera.begin(seed, trial, evaluation);
+        camera.begin({seed, trial, evaluation});
         const std::vector<Bytes> first = film(&camera, 40);
         Camera other(allNuisances(), kDt);
-        other.begin(seed, trial, evaluation);
+        other.begin({seed, trial, evaluation});
         EXPECT_EQ(film(&other, 40), first);
         films.insert(first);
         losses.insert(lost(first));
@@ -247,12 +247,12 @@ TEST(Camera, TakesTheSameNoisyGoalImageAtAnyTimeAndChangesNoImageByIt) {
   Camera camera(options, kDt);
   const RenderedImage rod = hangingRod();
   const Bytes goal = camera.captureGoal(rod).bytes;
-  camera.begin(5, 4, true);
+  camera.begin({5, 4, true});
   film(&camera, 10);
   EXPECT_EQ(camera.captureGoal(rod).bytes, goal);
   Camera undisturbed(allNuisances(), kDt);
-  undisturbed.begin(5, 4, true);
-  camera.begin(5, 4, true);
+  undisturbed.begin({5, 4, true});
+  camera.begin({5, 4, true});
   camera.captureGoal(rod);
   EXPECT_EQ(film(&camera, 20), film(&undisturbed, 20));
   options.noise_std = 0.0;

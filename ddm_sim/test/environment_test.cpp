@@ -39,9 +39,9 @@ struct ByHand {
   Camera camera{allNuisances(), quickPendulum().dt};
 
   std::optional<RenderedImage> begin() {
-    std::mt19937_64 starts = startStream(kSeed, kTrial, true);
+    std::mt19937_64 starts = randomStream({kSeed, kTrial, true}, StreamRole::kStart);
     plant.setState(plant.drawStart(starts));
-    camera.begin(kSeed, kTrial, true);
+    camera.begin({kSeed, kTrial, true});
     return look();
   }
   std::optional<RenderedImage> step(double value) {
@@ -54,7 +54,7 @@ struct ByHand {
 TEST(Environment, GoesOnUnderTheSameTorqueUntilAFrameIsSeenAndCountsTheLostOnes) {
   Environment environment(quickPlant(), allNuisances());
   ByHand by_hand;
-  environment.reset(kSeed, kTrial, true);
+  environment.reset({kSeed, kTrial, true});
   by_hand.begin();
   std::uint64_t steps = 0;
   for (int frame = 1; frame <= 40; ++frame) {
@@ -76,12 +76,12 @@ TEST(Environment, GoesOnUnderTheSameTorqueUntilAFrameIsSeenAndCountsTheLostOnes)
 TEST(Environment, BeginsARunAtAGivenStartDigitByDigitWithTheFramesOfThatRun) {
   Environment environment(quickPlant(), allNuisances());
   const Eigen::Vector2d start(0.1 + 0.2, -1e-17);
-  const RenderedImage first = environment.reset(kSeed, kTrial, true, start);
+  const RenderedImage first = environment.reset({kSeed, kTrial, true}, start);
   EXPECT_EQ(environment.plant().state(), start);
   ByHand by_hand;
   by_hand.begin();
   by_hand.plant.setState(start);
-  by_hand.camera.begin(kSeed, kTrial, true);
+  by_hand.camera.begin({kSeed, kTrial, true});
   EXPECT_EQ(first.bytes, by_hand.look()->bytes);
 }
 
@@ -90,12 +90,12 @@ TEST(Environment, ChangesNothingWhereAStartIsRefused) {
   Environment environment(std::make_unique<ToyPlant>(traits), allNuisances());
   Environment undisturbed(std::make_unique<ToyPlant>(traits), allNuisances());
   for (Environment* each : {&environment, &undisturbed}) {
-    each->reset(kSeed, kTrial, true);
+    each->reset({kSeed, kTrial, true});
     each->stepUntilSeen(torqueOf(2.0));
   }
-  EXPECT_THROW(environment.reset(1, 1, false, Eigen::VectorXd::Zero(3)), std::invalid_argument);
+  EXPECT_THROW(environment.reset({1, 1, false}, Eigen::VectorXd::Zero(3)), std::invalid_argument);
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW(environment.reset(1, 1, false, Eigen::Vector2d(0.0, nan)), std::invalid_argument);
+  EXPECT_THROW(environment.reset({1, 1, false}, Eigen::Vector2d(0.0, nan)), std::invalid_argument);
   EXPECT_EQ(environment.plant().state(), undisturbed.plant().state());
   EXPECT_EQ(environment.plant().goal(), undisturbed.plant().goal());
   EXPECT_EQ(environment.numSteps(), undisturbed.numSteps());
@@ -118,15 +118,15 @@ TEST(Environment, DrawsAGoalForEachRunAndShowsItOnTheGoalImage) {
   std::set<std::vector<std::uint8_t>> images;
   for (const bool evaluation : {false, true}) {
     for (std::uint32_t trial = 0; trial < 5; ++trial) {
-      environment.reset(kSeed, trial, evaluation);
+      environment.reset({kSeed, trial, evaluation});
       const Eigen::VectorXd goal = environment.plant().goal();
-      EXPECT_EQ(goal, goalOf(alone, kSeed, trial, evaluation));
+      EXPECT_EQ(goal, goalOf(alone, {kSeed, trial, evaluation}));
       EXPECT_EQ(environment.goalImage().bytes, alone.render(goal).bytes);
       EXPECT_EQ(environment.plant().goalError(goal), 0.0);
       goals.insert(goal[0]);
       images.insert(environment.goalImage().bytes);
       // An explicit initial state does not change the goal of the episode.
-      environment.reset(kSeed, trial, evaluation, Eigen::Vector2d(0.0, 0.0));
+      environment.reset({kSeed, trial, evaluation}, Eigen::Vector2d(0.0, 0.0));
       EXPECT_EQ(environment.plant().goal(), goal);
     }
   }

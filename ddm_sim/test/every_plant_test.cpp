@@ -21,20 +21,20 @@ namespace ddm {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::ToyMaker;
+using testing::ToyPlugin;
 
 struct Candidate {
   std::string name;
-  std::function<std::shared_ptr<const PlantMaker>()> maker;
+  std::function<std::shared_ptr<const PlantPlugin>()> maker;
   bool needs_mujoco = false;
   bool own = true;  ///< true for plants of this package
 };
 
 void PrintTo(const Candidate& candidate, std::ostream* out) { *out << candidate.name; }
 
-std::shared_ptr<const PlantMaker> makerOfFile(const std::string& path) {
+std::shared_ptr<const PlantPlugin> makerOfFile(const std::string& path) {
   ParamReader reader = ParamReader::fromFiles({path});
-  const std::shared_ptr<const PlantMaker> maker = readPlant(&reader);
+  std::shared_ptr<const PlantPlugin> maker = readPlant(&reader);
   reader.requireValid();
   return maker;
 }
@@ -52,7 +52,7 @@ std::vector<Candidate> candidates() {
         {name, [path] { return makerOfFile(path); }, type.as<std::string>("") == "mujoco"});
   }
   std::sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
-  out.push_back({"toy", [] { return std::make_shared<ToyMaker>(testing::colourfulToy()); }});
+  out.push_back({"toy", [] { return std::make_shared<ToyPlugin>(testing::colourfulToy()); }});
   if (const char* const named = std::getenv("DDM_PLANT")) {
     out.push_back({"named", [named] { return makerOfFile(plantFile(named)); }, false, false});
   }
@@ -87,7 +87,7 @@ class EveryPlantTest : public ::testing::TestWithParam<Candidate> {
     return out;
   }
 
-  std::shared_ptr<const PlantMaker> maker_;
+  std::shared_ptr<const PlantPlugin> maker_;
   std::unique_ptr<Plant> plant_;
 };
 
@@ -146,14 +146,14 @@ TEST_P(EveryPlantTest, HasAnErrorAnImageAPlaceAndARewardInEachState) {
 
 TEST_P(EveryPlantTest, DrawsAStartAndAGoalThatTheRunFixesAndDoesNotSetThem) {
   for (const bool evaluation : {false, true}) {
-    std::mt19937_64 first = startStream(7, 3, evaluation), second = first;
-    std::mt19937_64 other = startStream(7, 4, evaluation);
+    std::mt19937_64 first = randomStream({7, 3, evaluation}, StreamRole::kStart), second = first;
+    std::mt19937_64 other = randomStream({7, 4, evaluation}, StreamRole::kStart);
     const std::unique_ptr<Plant> twin = makePlant(*maker_);
     const Eigen::VectorXd start = plant_->drawStart(first);
     EXPECT_EQ(twin->drawStart(second), start);
     EXPECT_NE(plant_->drawStart(other), start);
-    const Eigen::VectorXd goal = goalOf(*plant_, 7, 3, evaluation);
-    EXPECT_EQ(goalOf(*twin, 7, 3, evaluation), goal);
+    const Eigen::VectorXd goal = goalOf(*plant_, {7, 3, evaluation});
+    EXPECT_EQ(goalOf(*twin, {7, 3, evaluation}), goal);
     twin->setGoal(goal);
     EXPECT_LE(twin->goalError(goal), 1e-9 * info().tolerance);
   }
@@ -162,7 +162,7 @@ TEST_P(EveryPlantTest, DrawsAStartAndAGoalThatTheRunFixesAndDoesNotSetThem) {
 }
 
 TEST_P(EveryPlantTest, SpreadsItsStartsAsItSays) {
-  std::mt19937_64 engine = startStream(1, 0, false);
+  std::mt19937_64 engine = randomStream({1, 0, false}, StreamRole::kStart);
   constexpr int kDraws = 20000;
   Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(plant_->stateDim());
   Eigen::MatrixXd products = Eigen::MatrixXd::Zero(plant_->stateDim(), plant_->stateDim());

@@ -21,7 +21,6 @@
 namespace ddm {
 namespace {
 
-using testing::ToyMaker;
 using testing::ToyPlant;
 using Traits = ToyPlant::Traits;
 
@@ -81,7 +80,7 @@ TEST(Plant, DrawsEachComponentOfAStartWithASpreadOfItsOwn) {
   Traits traits;
   traits.info.start << 3.0, -4.0;
   traits.info.start_std << 0.0, 0.5;
-  std::mt19937_64 engine = startStream(1, 0, false);
+  std::mt19937_64 engine = randomStream({1, 0, false}, StreamRole::kStart);
   const Eigen::VectorXd start = ToyPlant(traits).drawStart(engine);
   EXPECT_EQ(start[0], 3.0);
   EXPECT_NE(start[1], -4.0);
@@ -123,9 +122,9 @@ TEST(StartStream, DiffersBetweenSeedsTrialsAndEvaluation) {
   std::set<double> drawn;
   const std::vector<TrialId> runs = {{0, 0, false}, {1, 0, false}, {0, 1, false}, {0, 0, true}};
   for (const TrialId& run : runs) {
-    std::mt19937_64 stream = startStream(run.seed, run.trial, run.evaluation);
+    std::mt19937_64 stream = randomStream(run, StreamRole::kStart);
     drawn.insert(plant.drawGoal(stream)[0]);
-    drawn.insert(goalOf(plant, run.seed, run.trial, run.evaluation)[0]);
+    drawn.insert(goalOf(plant, run)[0]);
   }
   EXPECT_EQ(drawn.size(), 2 * runs.size()) << "goals have a stream of their own";
 }
@@ -158,11 +157,11 @@ TEST(MakePlant, RefusesWhatAPlantMayNotSayOfItself) {
     Traits traits;
     flaw.spoil(&traits.info);
     EXPECT_TRUE(testing::throwsNaming<std::invalid_argument>(
-        [&traits] { makePlant(ToyMaker(traits)); }, flaw.words));
+        [&traits] { makePlant(testing::ToyPlugin(traits)); }, flaw.words));
   }
-  EXPECT_NO_THROW(makePlant(ToyMaker(Traits())));
+  EXPECT_NO_THROW(makePlant(testing::ToyPlugin(Traits())));
   EXPECT_TRUE(testing::throwsNaming<std::invalid_argument>(
-      [] { makePlant(ToyMaker([] { return nullptr; })); }, {"their_package/Toy"}));
+      [] { checkedPlant(nullptr, "their_package/Toy"); }, {"their_package/Toy"}));
 }
 
 }  // namespace

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstdint>
+#include <ddm_common/random_stream.h>
+
 #include <deque>
 #include <optional>
 #include <random>
@@ -31,7 +32,6 @@ struct CameraOptions {
     visitor("drop_rate", drop_rate);
   }
 
-  /// Describes each invalid value and the rule that it breaks. Empty if all values are valid.
   std::vector<std::string> problems() const;
 };
 
@@ -53,16 +53,13 @@ struct CameraOptions {
 /// Deviation: the paper's camera has no disturbances.
 class Camera {
  public:
-  /// Begins the episode (seed 0, trial 0, no evaluation).
+  /// Begins the episode TrialId().
   /// @param dt  time between two images [s]
   /// @throws std::invalid_argument with all problems of the options
   Camera(const CameraOptions& options, double dt);
 
   /// Begins an episode: the next call of capture() takes its first image.
-  /// @param seed        seed of the experiment
-  /// @param trial       number of the episode, see TrialId::trial
-  /// @param evaluation  true for the evaluation (greedy episode) that follows `trial`
-  void begin(std::uint64_t seed, std::uint32_t trial, bool evaluation);
+  void begin(const TrialId& id);
 
   /// Takes the image of this time step and returns the image that was taken `delay` calls earlier.
   /// The first `delay` calls of an episode return its first image. Call this function exactly once

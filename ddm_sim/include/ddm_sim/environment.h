@@ -3,7 +3,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstdint>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -26,20 +25,15 @@ class Environment {
 
   /// Sets the initial state and the goal of an episode, and returns its first image, which is never
   /// lost.
-  /// @param seed        seed of the experiment
-  /// @param trial       number of the episode, see TrialId::trial
-  /// @param evaluation  true for the evaluation (greedy episode) that follows `trial`
-  /// @param start       (optional) initial state, taken exactly; without it the initial state is
-  ///         drawn
+  /// @param start  (optional) initial state, taken exactly; without it the initial state is drawn
   /// @throws std::invalid_argument if `start` is not a state or the goal is out of reach; the
   ///         environment is then unchanged
-  RenderedImage reset(std::uint64_t seed, std::uint32_t trial, bool evaluation,
-                      const std::optional<Eigen::VectorXd>& start = {}) {
-    const Eigen::VectorXd goal = goalOf(*plant_, seed, trial, evaluation);
-    std::mt19937_64 starts = startStream(seed, trial, evaluation);
+  RenderedImage reset(const TrialId& id, const std::optional<Eigen::VectorXd>& start = {}) {
+    const Eigen::VectorXd goal = goalOf(*plant_, id);
+    std::mt19937_64 starts = randomStream(id, StreamRole::kStart);
     plant_->setState(start ? *start : plant_->drawStart(starts));
     plant_->setGoal(goal);
-    camera_.begin(seed, trial, evaluation);
+    camera_.begin(id);
     num_steps_ = 0;
     applied_.setZero();
     return *camera_.capture(plant_->render(plant_->state()));

@@ -15,7 +15,6 @@ constexpr double kTileSoftness = 9.0;
 struct MovingTileOptions : PlantOptions {
   MovingTileOptions() { type = "moving_tile"; }
 
-  /// Describes each invalid value and the rule that it breaks. Empty if all values are valid.
   std::vector<std::string> problems() const;
 };
 

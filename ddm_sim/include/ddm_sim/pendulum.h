@@ -28,7 +28,6 @@ struct PendulumOptions : PlantOptions {
     look.visit(visitor);
   }
 
-  /// Describes each invalid value and the rule that it breaks. Empty if all values are valid.
   std::vector<std::string> problems() const;
 };
 

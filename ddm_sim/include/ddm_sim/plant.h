@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ddm_common/random_stream.h>
+
 #include <Eigen/Core>
-#include <cstdint>
 #include <memory>
 #include <optional>
 #include <random>
@@ -25,7 +26,7 @@ struct Joint {
 /// Description of a plant. CSV columns, torque limits, units and the success criterion follow from
 /// it.
 struct PlantInfo {
-  std::string type = "of a test";  ///< value of plant/type, for messages; makePlant() sets it
+  std::string type = "of a test";  ///< value of plant/type, for messages; checkedPlant() sets it
 
   std::vector<Joint> joints;  ///< in the order of their positions in the state
 
@@ -67,7 +68,6 @@ class Plant {
   Plant& operator=(const Plant&) = delete;
 
   const PlantInfo& info() const { return info_; }
-  void setType(const std::string& type) { info_.type = type; }
   int stateDim() const { return info_.stateDim(); }
   int torqueDim() const { return info_.torqueDim(); }
 
@@ -178,36 +178,17 @@ class Plant {
   virtual Eigen::VectorXd locate(const Eigen::VectorXd& state) const = 0;
 
   Eigen::VectorXd saturated(const Eigen::VectorXd& torque) const;
+  friend std::unique_ptr<Plant> checkedPlant(std::unique_ptr<Plant> plant, const std::string& type);
 
   PlantInfo info_;
   Eigen::VectorXd state_;
   Eigen::VectorXd goal_;
 };
 
-/// Random stream for initial states. The arguments determine the stream. Each episode has its own
-/// stream, which is independent of the streams for all other purposes.
-/// @param seed        seed of the experiment
-/// @param trial       number of the episode, see TrialId::trial
-/// @param evaluation  true for the evaluation (greedy episode) that follows `trial`
-std::mt19937_64 startStream(std::uint64_t seed, std::uint32_t trial, bool evaluation);
+/// Draws the goal of an episode from a random stream of its own.
+Eigen::VectorXd goalOf(const Plant& plant, const TrialId& id);
 
-/// Draws the goal of an episode from a random stream of its own; arguments as for startStream().
-Eigen::VectorXd goalOf(const Plant& plant, std::uint64_t seed, std::uint32_t trial,
-                       bool evaluation);
-
-/// Constructs plants of one type from the options that the maker holds.
-class PlantMaker {
- public:
-  virtual ~PlantMaker() = default;
-
-  virtual std::string type() const = 0;  ///< value of `plant/type`, for messages
-
-  /// Constructs a plant.
-  /// @throws std::invalid_argument if the options do not fit together
-  virtual std::unique_ptr<Plant> make() const = 0;
-};
-
-/// Constructs a plant and checks its PlantInfo. The rules are:
+/// Returns a plant after a check of its PlantInfo. The rules are:
 ///
 /// - The numbers of names, limits, initial values and goal values equal the number of components,
 ///   which is 1 to 1000. All values are finite. Names differ and contain no blanks, commas or
@@ -217,9 +198,9 @@ class PlantMaker {
 ///
 /// Class Plant checks the values that the plant returns while it runs. test/every_plant_test.cpp
 /// tests all other rules and can also test a plant of another package.
-/// @throws std::invalid_argument with the problems of the options, or with the type and all rules
-///         that its plant breaks
-std::unique_ptr<Plant> makePlant(const PlantMaker& maker);
+/// @param type  value of `plant/type`, for messages
+/// @throws std::invalid_argument with the type and all rules that the plant breaks
+std::unique_ptr<Plant> checkedPlant(std::unique_ptr<Plant> plant, const std::string& type);
 
 /// Whether a name can be a column name of a CSV file: ASCII characters without blanks, commas and
 /// quotes.

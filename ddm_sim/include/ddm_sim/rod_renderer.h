@@ -25,7 +25,6 @@ struct RodLook {
     visitor("edge_softness", edge_softness);
   }
 
-  /// Describes each invalid value and the rule that it breaks. Empty if all values are valid.
   std::vector<std::string> problems() const;
 };
 

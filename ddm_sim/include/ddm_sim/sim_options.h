@@ -21,7 +21,6 @@ struct SimOptions {
     visitor("watchdog", watchdog);
   }
 
-  /// Describes each invalid value and the rule that it breaks. Empty if all values are valid.
   std::vector<std::string> problems() const {
     OptionChecks sim("sim");
     sim.requireWithin("watchdog", watchdog, 0.1, 86400.0);

@@ -32,7 +32,6 @@ struct TwoLinkOptions : PlantOptions {
     look.visit(visitor);
   }
 
-  /// Describes each invalid value and the rule that it breaks. Empty if all values are valid.
   std::vector<std::string> problems() const;
 };
 

@@ -1,13 +1,14 @@
 // Plugin of the plant type `mujoco`.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mujoco_plugin.h"
-
 #include <ddm_mujoco/mujoco_plant.h>
 #include <ros/package.h>
 
 #include <filesystem>
+#include <memory>
 #include <stdexcept>
 #include <string>
+
+#include "ddm_plant_plugin/plant_plugin.h"
 
 namespace ddm {
 namespace {
@@ -55,6 +56,7 @@ class MujocoPlugin : public PlantPlugin {
 
 }  // namespace
 
+/// Declared and called in plant_config.cpp.
 std::shared_ptr<PlantPlugin> makeMujocoPlugin() { return std::make_shared<MujocoPlugin>(); }
 
 }  // namespace ddm

@@ -17,9 +17,19 @@
 #include <stdexcept>
 #include <vector>
 
-#include "mujoco_plugin.h"
-
 namespace ddm {
+
+#ifdef DDM_HAS_MUJOCO
+std::shared_ptr<PlantPlugin> makeMujocoPlugin();  // in mujoco_plugin.cpp
+#else
+std::shared_ptr<PlantPlugin> makeMujocoPlugin() {
+  throw std::invalid_argument(
+      "plant/type must be a plant that this build has, got mujoco, which needs MuJoCo and EGL: "
+      "install libmujoco-dev and libegl-dev, or see MuJoCo in doc/install.md where the system has "
+      "no such packages, then configure and build the workspace again");
+}
+#endif
+
 namespace {
 
 namespace fs = std::filesystem;

@@ -103,7 +103,7 @@ TEST_F(TrueStateTest, TheTaskIsUprightWithinTheLengthOfTheRodAlsoForAPlugin) {
   covariance.diagonal() << 0.5 * 0.5, 0.3 * 0.3;  // the rate is first
   EXPECT_EQ(task.start.covariance, covariance);
   EXPECT_EQ(task.start.mean, Eigen::VectorXd::Zero(2));
-  const std::unique_ptr<Plant> plugin = makePlant(testing::ToyMaker(armTo(-M_PI)));
+  const std::unique_ptr<Plant> plugin = makePlant(testing::ToyPlugin(armTo(-M_PI)));
   for (const PilcoTask& each : {task, trueStateTask(*plugin)}) {
     for (const double angle : {0.0, 1.0, 3.0, M_PI}) {
       const double lengths = 2.0 * std::cos(angle / 2.0);  // distance of the tip from its goal
@@ -119,7 +119,7 @@ TEST_F(TrueStateTest, APlantThatIsNoPendulumIsRefused) {
   two_joints.info.joints = {{"shoulder", JointKind::kAngle}, {"elbow", JointKind::kAngle}};
   two_joints.info.state_names = {"shoulder_rad", "elbow_rad"};
   for (const testing::ToyPlant::Traits& traits : {length, two_joints, armTo(0.0)}) {
-    const std::unique_ptr<Plant> plant = makePlant(testing::ToyMaker(traits));
+    const std::unique_ptr<Plant> plant = makePlant(testing::ToyPlugin(traits));
     EXPECT_TRUE(throwsNaming<std::invalid_argument>([&] { observeTrueState({}, *plant); },
                                                     {"joint(s)", "pilco_features"}));
   }

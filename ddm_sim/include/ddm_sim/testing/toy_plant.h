@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ddm_plant_plugin/plant_plugin.h>
+
 #include <Eigen/Core>
 #include <cmath>
 #include <cstddef>
@@ -62,16 +64,12 @@ class ToyPlant : public Plant {
         [](const Eigen::VectorXd& state) { return Eigen::VectorXd(state.head(1)); };
 
     // If empty, the default implementation of Plant is used.
-    std::function<Eigen::VectorXd(std::mt19937_64*)> draw_start;
     std::function<Eigen::VectorXd(std::mt19937_64*)> draw_goal;
     std::function<std::optional<double>(const Eigen::VectorXd&, const Eigen::VectorXd&)> reward;
   };
 
   explicit ToyPlant(const Traits& traits) : Plant(traits.info), traits_(traits) {}
 
-  Eigen::VectorXd drawStart(std::mt19937_64& engine) const override {
-    return traits_.draw_start ? traits_.draw_start(&engine) : Plant::drawStart(engine);
-  }
   Eigen::VectorXd drawGoal(std::mt19937_64& engine) const override {
     return traits_.draw_goal ? traits_.draw_goal(&engine) : Plant::drawGoal(engine);
   }
@@ -96,20 +94,18 @@ class ToyPlant : public Plant {
   Traits traits_;
 };
 
-/// Makes toy plants of the type "their_package/Toy".
-class ToyMaker : public PlantMaker {
+/// Makes toy plants.
+class ToyPlugin : public PlantPlugin {
  public:
-  using Make = std::function<std::unique_ptr<Plant>()>;
-
-  explicit ToyMaker(Make make) : make_(std::move(make)) {}
-  explicit ToyMaker(const ToyPlant::Traits& traits)
-      : ToyMaker([traits] { return std::make_unique<ToyPlant>(traits); }) {}
+  explicit ToyPlugin(ToyPlant::Traits traits) : traits_(std::move(traits)) {}
 
   std::string type() const override { return "their_package/Toy"; }
-  std::unique_ptr<Plant> make() const override { return make_(); }
+  void read(ParamReader* /*reader*/) override {}
+  YAML::Node block() const override { return YAML::Load("{type: their_package/Toy}"); }
+  std::unique_ptr<Plant> make() const override { return std::make_unique<ToyPlant>(traits_); }
 
  private:
-  Make make_;
+  ToyPlant::Traits traits_;
 };
 
 /// A toy plant with the features that no plant of this package has: a wide colour image (of a

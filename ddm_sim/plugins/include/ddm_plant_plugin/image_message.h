@@ -5,7 +5,7 @@
 #include <ddm_sim/plant.h>
 #include <ddm_sim/rendered_image.h>
 #include <ros/time.h>
-#include <sensor_msgs/Image.h>
+#include <sensor_msgs/fill_image.h>
 
 #include <optional>
 #include <string>
@@ -24,12 +24,8 @@ inline sensor_msgs::Image imageMessage(const RenderedImage& rendered, const ros:
   sensor_msgs::Image image;
   image.header.stamp = stamp;
   image.header.frame_id = frame;
-  image.width = static_cast<std::uint32_t>(rendered.width);
-  image.height = static_cast<std::uint32_t>(rendered.height);
-  image.encoding = rendered.channels == 1 ? "mono8" : "rgb8";
-  image.is_bigendian = 0;
-  image.step = image.width * static_cast<std::uint32_t>(rendered.channels);
-  image.data = rendered.bytes;
+  sensor_msgs::fillImage(image, rendered.channels == 1 ? "mono8" : "rgb8", rendered.height,
+                         rendered.width, rendered.width * rendered.channels, rendered.bytes.data());
   return image;
 }
 

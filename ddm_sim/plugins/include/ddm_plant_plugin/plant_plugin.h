@@ -13,8 +13,16 @@ namespace ddm {
 
 /// Reads the block `plant` for one type of plant, and makes plants of this type. Derive from
 /// PlantPluginOf.
-class PlantPlugin : public PlantMaker {
+class PlantPlugin {
  public:
+  virtual ~PlantPlugin() = default;
+
+  virtual std::string type() const = 0;  ///< value of `plant/type`, for messages
+
+  /// Constructs a plant. Call makePlant() instead, which also checks the plant.
+  /// @throws std::invalid_argument if the options do not fit together
+  virtual std::unique_ptr<Plant> make() const = 0;
+
   /// Reads all keys. The reader collects the problems.
   virtual void read(ParamReader* reader) = 0;
 
@@ -23,6 +31,12 @@ class PlantPlugin : public PlantMaker {
   /// Name of the graphics driver if the pixels of the images depend on it, otherwise empty.
   virtual std::string renderer() const { return ""; }
 };
+
+/// Constructs a plant.
+/// @throws std::invalid_argument as PlantPlugin::make() and checkedPlant()
+inline std::unique_ptr<Plant> makePlant(const PlantPlugin& plugin) {
+  return checkedPlant(plugin.make(), plugin.type());
+}
 
 /// Plugin of a plant whose constructor takes an options struct:
 ///
