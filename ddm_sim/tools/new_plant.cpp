@@ -11,9 +11,11 @@
 #include <boost/algorithm/string/join.hpp>
 #include <boost/algorithm/string/split.hpp>
 #include <filesystem>
+#include <iomanip>
 #include <iostream>
 #include <memory>
 #include <opencv2/imgproc.hpp>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -21,7 +23,6 @@
 #include "ddm_common/param_reader.h"
 #include "ddm_common/param_value.h"
 #include "ddm_common/tool.h"
-#include "plant_text.h"
 
 namespace ddm {
 namespace {
@@ -41,6 +42,133 @@ constexpr char kAbout[] =
     "learner sees them.\n"
     "Exit:   0 done, 1 the model cannot be a plant as it is, 2 bad options.\n\n"
     "Options";
+
+/// Name of the contact sheet (PNG) beside a plant file.
+std::string imageFile(const std::string& plant_file) {
+  return fs::path(plant_file).replace_extension(".png").string();
+}
+
+std::string number(double value, int digits = 7) {
+  return textOf(std::setprecision(digits), value);
+}
+
+std::string list(const std::vector<double>& values) {
+  Texts texts;
+  for (const double value : values) texts.push_back(number(value));
+  return "[" + join(texts, ", ") + "]";
+}
+
+/// Range of a joint as text: "-1 to 1 rad", or "no limits".
+std::string rangeOf(const ModelJoint& joint) {
+  if (!joint.limited) return "no limits";
+  return number(joint.lower, 4) + " to " + number(joint.upper, 4) +
+         (joint.isHinge() ? " rad" : " m");
+}
+
+/// A relative path if the model lies in the folder of the plant file or below it, so that the
+/// folder can be moved. Otherwise an absolute path.
+std::string modelPath(const std::string& named, const std::string& plant_file) {
+  if (named.rfind("package://", 0) == 0) return named;
+  const fs::path model = fs::absolute(named).lexically_normal();
+  const fs::path folder = fs::absolute(plant_file).lexically_normal().parent_path();
+  const std::string near = model.lexically_relative(folder).string();
+  return near.empty() || near.rfind("..", 0) == 0 ? model.string() : near;
+}
+
+std::string quoted(const std::string& text) {
+  YAML::Emitter out;
+  out << YAML::DoubleQuoted << text;
+  return out.c_str();
+}
+
+std::string quoted(const Texts& texts) {
+  Texts all;
+  for (const std::string& one : texts) all.push_back(quoted(one));
+  return "[" + join(all, ", ") + "]";
+}
+
+/// Makes a YAML comment, with line breaks.
+std::string comment(const std::string& text, const std::string& indent = "  ") {
+  constexpr std::size_t kColumns = 100;
+  std::istringstream words(text);
+  std::string out, line = indent + "#";
+  for (std::string word; words >> word;) {
+    if (line.size() + 1 + word.size() > kColumns) {
+      out += line + "\n";
+      line = indent + "#";
+    }
+    line += " " + word;
+  }
+  return out + line + "\n";
+}
+
+/// Content of a plant file, with the reason for each value as a comment.
+std::string plantText(const std::string& model, const std::string& plant_file,
+                      const PlantProposal& proposal) {
+  const MujocoOptions& options = proposal.options;
+  Texts joints, motors, shown;
+  for (const ModelJoint& joint : proposal.joints) {
+    joints.push_back(joint.name + (joint.isHinge() ? " [rad], " : " [m], ") + rangeOf(joint));
+    if (joint.isHinge() || (joint.limited && !joint.shownInPart())) continue;
+    shown.push_back(joint.name + " from " + number(joint.shown_lower, 3) + " to " +
+                    number(joint.shown_upper, 3) + " m");
+  }
+  for (const std::string& name : proposal.motors) {
+    const auto joint = std::find_if(proposal.joints.begin(), proposal.joints.end(),
+                                    [&](const ModelJoint& one) { return one.name == name; });
+    motors.push_back(name + (joint->isHinge() ? " [N m]" : " [N]"));
+  }
+  std::ostringstream out;
+  // Writes a key, and above it a comment with the meaning of the key and the reason for its value.
+  const auto write = [&](const char* key, const std::string& value, const std::string& meaning) {
+    const auto why = proposal.reasons.find(key);
+    const bool set = std::count(proposal.to_set.begin(), proposal.to_set.end(), key) > 0;
+    out << comment((set ? "SET: " : "") + meaning +
+                   (why == proposal.reasons.end() ? "" : " (" + why->second + ")") + ".")
+        << "  " << key << ": " << value << "\n";
+  };
+  out << comment("A plant of " + fs::path(model).filename().string() +
+                     ", proposed by new_plant. It works as it is; lines with SET are values that "
+                     "the model file does not say. Images: " +
+                     fs::path(imageFile(plant_file)).filename().string() +
+                     ". All keys: config/mujoco_pendulum.yaml of ddm_sim.",
+                 "")
+      << "#\n"
+      << comment("Joints, in the order of start and goal: " + join(joints, "; ") + ".", "")
+      << "\nplant:\n  type: mujoco\n";
+  write("model", quoted(modelPath(model, plant_file)),
+        "A relative path starts at the folder of this file");
+  write("motors", quoted(options.motors), "Motors: " + join(motors, ", "));
+  write("max_torque", list(options.max_torque), "The largest torque of each motor");
+  write("dt", number(options.dt, 12), "Seconds between two images");
+  if (options.timestep > 0.0) {
+    write("timestep", number(options.timestep, 12), "Time step of the physics [s]");
+  }
+  write("start", list(options.start), "Each episode starts near this pose");
+  write("start_std", list(options.start_std),
+        "Standard deviation of each position and rate of the initial state");
+  write("goal", list(options.goal), "The pose to reach, which the learner is shown as an image");
+  const bool has_hinges = std::any_of(proposal.joints.begin(), proposal.joints.end(),
+                                      [](const ModelJoint& joint) { return joint.isHinge(); });
+  write("tolerance", number(options.tolerance),
+        std::string("The goal is reached within this error of each ") +
+            (has_hinges ? "hinge [deg]" : "joint [m]"));
+  write("camera_position", list(options.look.position),
+        "The camera sees all poses" +
+            (shown.empty()
+                 ? ""
+                 : " of " + join(shown, ", ") + "; farther away the robot leaves the image") +
+            ". For a camera of an MJCF file, write `camera: NAME` instead of these two keys");
+  write("camera_look_at", list(options.look.look_at), "The point in the middle of the image");
+  write("supersampling", std::to_string(options.look.supersampling),
+        "Images are drawn so many times larger, then averaged, so that edges are soft");
+  if (proposal.feature_dim > 2) {
+    out << "\n"
+        << comment("Two features for a joint that turns far, one for another one.", "")
+        << "model:\n  feature_dim: " << proposal.feature_dim << "\n";
+  }
+  return out.str();
+}
 
 struct Arguments {
   std::string model;
@@ -140,11 +268,8 @@ void writeContactSheet(const PlantProposal& proposal, const Plant& plant, const 
     cv::resize(colourOf(plant.render(state)), sheet(cv::Rect(x, y + kLine + kCell, kCell, kCell)),
                {kCell, kCell}, 0, 0, cv::INTER_NEAREST);
   }
-  RenderedImage rendered;
-  rendered.width = sheet.cols;
-  rendered.height = sheet.rows;
-  rendered.channels = 3;
-  rendered.bytes.assign(sheet.data, sheet.data + sheet.total() * sheet.elemSize());
+  const RenderedImage rendered{
+      sheet.cols, sheet.rows, 3, {sheet.data, sheet.data + sheet.total() * sheet.elemSize()}, {}};
   writeImageFile(file, imageMessage(rendered, ros::Time()));
 }
 
@@ -153,7 +278,7 @@ void printProposal(const PlantProposal& proposal) {
     const bool motor = std::count(proposal.motors.begin(), proposal.motors.end(), joint.name) > 0;
     std::cout << "  " << joint.name << ": " << (joint.isHinge() ? "hinge" : "slide") << ", "
               << rangeOf(joint) << ", "
-              << (joint.effort > 0.0 ? "effort limit " + number(joint.effort, "%.4g") +
+              << (joint.effort > 0.0 ? "effort limit " + number(joint.effort, 4) +
                                            (joint.isHinge() ? " N m" : " N")
                                      : std::string("no effort limit"))
               << (motor ? ", motor" : "") << "\n";
@@ -165,9 +290,7 @@ void printProposal(const PlantProposal& proposal) {
 }
 
 void printCheck(const mjModel& model, const PlantProposal& proposal, const PlantCheck& check) {
-  std::cout << "simulation: stable; fastest joint " << number(check.still_speed, "%.2g")
-            << " rad/s or m/s in 2 s without torque, " << number(check.random_speed, "%.2g")
-            << " under random torques\nimage: " << check.changed_pixels
+  std::cout << "simulation: stable under random torques\nimage: " << check.changed_pixels
             << " of 2601 pixels differ between two poses\n";
   constexpr int kFewPixels = 25;
   const auto warn = [](const std::string& text) { std::cout << "warning: " << text << "\n"; };
@@ -189,14 +312,13 @@ void printCheck(const mjModel& model, const PlantProposal& proposal, const Plant
   }
   constexpr double kNarrow = 0.1;  // a usual range in radians that MuJoCo has read as degrees [rad]
   for (const ModelJoint& joint : proposal.joints) {
-    if (!joint.isHinge() || joint.upper - joint.lower >= kNarrow) continue;
-    warn("the range of " + joint.name + " is only " + rangeOf(joint) +
-         ": MJCF has degrees unless the file has <compiler angle=\"radian\"/>");
-  }
-  for (const ModelJoint& joint : proposal.joints) {
+    if (joint.isHinge() && joint.upper - joint.lower < kNarrow) {
+      warn("the range of " + joint.name + " is only " + rangeOf(joint) +
+           ": MJCF has degrees unless the file has <compiler angle=\"radian\"/>");
+    }
     if (!joint.shownInPart()) continue;
-    warn("the camera shows " + joint.name + " from " + number(joint.shown_lower, "%.3g") + " to " +
-         number(joint.shown_upper, "%.3g") + " m of " + rangeOf(joint) +
+    warn("the camera shows " + joint.name + " from " + number(joint.shown_lower, 3) + " to " +
+         number(joint.shown_upper, 3) + " m of " + rangeOf(joint) +
          ", or the robot would be tiny: limit the joint in the model file to what you need");
   }
 }
@@ -218,7 +340,7 @@ void newPlant(const Arguments& arguments) {
   });
   writeFileAtomically(draft, plantText(arguments.model, arguments.out, proposal));
   const std::unique_ptr<Plant> plant = makePlant(*readPlantFiles({draft}));
-  printCheck(model->get(), proposal, checkPlant(proposal, plant.get()));
+  printCheck(model->get(), proposal, checkPlant(proposal, *plant));
   writeContactSheet(proposal, *plant, imageFile(arguments.out));
   renameDurably(draft, arguments.out);
 

@@ -1,14 +1,12 @@
 // Finds a camera position from which all poses of a model are visible.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "camera_placement.h"
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
 #include "ddm_mujoco/renderer.h"
 #include "ddm_sim/angles.h"
-#include "refuse.h"
+#include "mechanism.h"
 
 namespace ddm {
 namespace {
@@ -149,20 +147,19 @@ RenderOptions lookFrom(const Vector3d& direction, const Matrix3Xd& corners, Rend
 }
 
 /// Standard deviation of each pixel over several poses, averaged over all pixels.
-double changeOfImages(const MujocoModel& model, const Mechanism& mechanism,
+double changeOfImages(const std::shared_ptr<const MujocoModel>& model, const Mechanism& mechanism,
                       const std::vector<Eigen::VectorXd>& poses, const RenderOptions& look) {
   constexpr int kPoses = 8;
-  Renderer renderer(model.share(), look);
-  Eigen::ArrayXd sum, squares;
+  Renderer renderer(model, look);
+  Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(look.width * look.height), squares = sum;
   for (int i = 0; i < kPoses; ++i) {
     const RenderedImage rendered =
         renderer.draw(mechanism.place(poses[static_cast<std::size_t>(i)]));
-    const Eigen::ArrayXd pixels =
-        Eigen::Map<const Eigen::Array<std::uint8_t, Eigen::Dynamic, 1>>(
-            rendered.bytes.data(), static_cast<Eigen::Index>(rendered.bytes.size()))
-            .cast<double>();
-    sum = i == 0 ? pixels : (sum + pixels).eval();
-    squares = i == 0 ? pixels.square().eval() : (squares + pixels.square()).eval();
+    const Eigen::ArrayXd pixels = Eigen::Map<const Eigen::Array<std::uint8_t, Eigen::Dynamic, 1>>(
+                                      rendered.bytes.data(), sum.size())
+                                      .cast<double>();
+    sum += pixels;
+    squares += pixels.square();
   }
   return (squares / kPoses - (sum / kPoses).square()).max(0.0).sqrt().mean();
 }
@@ -187,23 +184,24 @@ Matrix3Xd movingCorners(const mjModel& m, const mjData& placed) {
   return corners;
 }
 
-RenderOptions placedCamera(const MujocoModel& model, const Mechanism& mechanism,
-                           const std::vector<Eigen::VectorXd>& poses, const RenderOptions& look) {
+RenderOptions placedCamera(const std::shared_ptr<const MujocoModel>& model,
+                           const Mechanism& mechanism, const std::vector<Eigen::VectorXd>& poses,
+                           const RenderOptions& look) {
+  const mjModel& m = model->get();
   Matrix3Xd corners;
   for (const Eigen::VectorXd& pose : poses) {
-    const Matrix3Xd here = movingCorners(model.get(), mechanism.place(pose));
+    const Matrix3Xd here = movingCorners(m, mechanism.place(pose));
     corners.conservativeResize(3, corners.cols() + here.cols());
     corners.rightCols(here.cols()) = here;
   }
   if (corners.cols() == 0) {
     refuseModel(
-        model.uri(),
+        model->uri(),
         " has no shape that a joint moves, so no image could show its pose: give the moving links "
         "a <visual>, the moving bodies a <geom>");
   }
-  const std::vector<Vector3d> directions =
-      directionsOf(model.get(), mechanism.place(poses.front()));
-  const Eigen::VectorXd seen = motionSeen(model.get(), mechanism, poses, directions);
+  const std::vector<Vector3d> directions = directionsOf(m, mechanism.place(poses.front()));
+  const Eigen::VectorXd seen = motionSeen(m, mechanism, poses, directions);
   RenderOptions best;
   double most = -1.0;
   std::size_t tried = 0;

@@ -3,25 +3,23 @@
 #include "egl_context.h"
 
 #include <EGL/eglext.h>
+#include <ddm_common/option_checks.h>
 
 #include <cstdlib>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 
 namespace ddm {
 namespace {
 
-constexpr unsigned int kMaxRenderbufferSize = 0x84E8;  // GL_MAX_RENDERBUFFER_SIZE
-constexpr unsigned int kRenderer = 0x1F01;             // GL_RENDERER
-constexpr unsigned int kVersion = 0x1F02;              // GL_VERSION
+constexpr unsigned int kRenderer = 0x1F01;  // GL_RENDERER
+constexpr unsigned int kVersion = 0x1F02;   // GL_VERSION
 
 [[noreturn]] void failAt(const std::string& step) {
-  std::ostringstream message;
-  message << "images of a MuJoCo model need OpenGL without a screen (EGL, surfaceless): " << step
-          << " failed, EGL error 0x" << std::hex << eglGetError()
-          << "; install Debian's libegl1 and libgl1-mesa-dri, which draw on any processor";
-  throw std::runtime_error(message.str());
+  throw std::runtime_error(
+      textOf("images of a MuJoCo model need OpenGL without a screen (EGL, surfaceless): ", step,
+             " failed, EGL error 0x", std::hex, eglGetError(),
+             "; install Debian's libegl1 and libgl1-mesa-dri, which draw on any processor"));
 }
 
 /// Address of a function of OpenGL or EGL. Null if the function does not exist.
@@ -80,14 +78,6 @@ EglContext::EglContext() : display_(display()), context_(EGL_NO_CONTEXT) {
 }
 
 EglContext::~EglContext() { eglDestroyContext(display_, context_); }
-
-int EglContext::maxSize() const {
-  int size = 0;
-  if (const auto get = openGl<void (*)(unsigned int, int*)>("glGetIntegerv")) {
-    get(kMaxRenderbufferSize, &size);
-  }
-  return size;
-}
 
 std::string EglContext::renderer() const {
   const auto get = openGl<const char* (*)(unsigned int)>("glGetString");

@@ -32,10 +32,6 @@ class EglContext {
     EGLDisplay display_;
   };
 
-  /// Largest side of an image that this driver can draw [pixels].
-  /// @pre this context is current
-  int maxSize() const;
-
   /// GL_RENDERER and GL_VERSION: "llvmpipe (LLVM 15.0.6, 256 bits), 4.5 (...) Mesa 22.3.6".
   /// @pre this context is current
   std::string renderer() const;

@@ -24,17 +24,11 @@
 #include <type_traits>
 
 #include "ddm_mujoco/mujoco_model.h"
-#include "refuse.h"
 
 namespace ddm {
 namespace {
 
 namespace fs = std::filesystem;
-
-void throwError(const char* text) { throw std::runtime_error(std::string("MuJoCo: ") + text); }
-
-// mjData::warning counts warnings, see MujocoPhysics::requireStable().
-void ignoreWarning(const char* /*text*/) {}
 
 constexpr std::size_t kStlHeader = 84;  // header and number of triangles [bytes]
 constexpr std::size_t kStlTriangle = 50;
@@ -82,20 +76,6 @@ std::string binaryStl(const std::string& ascii) {
   return binary;
 }
 
-/// Files in memory. MuJoCo finds them by their name without a folder. The structure has 2 MB, too
-/// much for the stack.
-using MemoryFiles = std::unique_ptr<mjVFS, void (*)(mjVFS*)>;
-
-MemoryFiles noFiles() {
-  const auto remove = [](mjVFS* files) {
-    mj_deleteVFS(files);
-    delete files;
-  };
-  MemoryFiles files(new mjVFS, remove);
-  mj_defaultVFS(files.get());
-  return files;
-}
-
 void add(const std::string& name, const std::string& bytes, mjVFS* files) {
   const int index = files->nfile;
   if (bytes.empty()) refuseModel(name, " is empty");
@@ -115,7 +95,13 @@ void requireFinite(const char* name, const Value* values, int count) {
 }
 
 ModelPointer compile(const ModelText& model) {
-  const MemoryFiles files = noFiles();
+  // Files in memory. MuJoCo finds them by their name without a folder. The structure has 2 MB, too
+  // much for the stack.
+  const std::unique_ptr<mjVFS, void (*)(mjVFS*)> files(new mjVFS, [](mjVFS* vfs) {
+    mj_deleteVFS(vfs);
+    delete vfs;
+  });
+  mj_defaultVFS(files.get());
   for (const auto& mesh : model.meshes) {
     const std::string bytes = readModelFile(mesh.second);
     const bool ascii = isAsciiStl(bytes);
@@ -244,11 +230,6 @@ void tryInOwnProcess(const ModelText& model) {
 
 }  // namespace
 
-void installMujocoHandlers() {
-  mju_user_error = throwError;
-  mju_user_warning = ignoreWarning;
-}
-
 std::string readModelFile(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
@@ -257,7 +238,12 @@ std::string readModelFile(const std::string& path) {
 }
 
 ModelPointer loadModel(const ModelText& model) {
-  installMujocoHandlers();
+  // Otherwise MuJoCo would wait for a key, exit, or write MUJOCO_LOG.TXT into the working folder.
+  mju_user_error = [](const char* text) {
+    throw std::runtime_error(std::string("MuJoCo: ") + text);
+  };
+  // mjData::warning counts warnings, see MujocoPhysics::requireStable().
+  mju_user_warning = [](const char* /*text*/) {};
   tryInOwnProcess(model);
   return compile(model);
 }

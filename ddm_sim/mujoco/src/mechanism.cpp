@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "camera_placement.h"
 #include "ddm_sim/angles.h"
 #include "mujoco_physics.h"
 

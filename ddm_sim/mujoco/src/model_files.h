@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "ddm_mujoco/mujoco_model.h"
 #include "load_model.h"
@@ -22,6 +23,28 @@ ModelFiles filesOf(const ModelText& model, const FindPackage& find_package);
 /// @throws std::invalid_argument as resolved()
 ModelText readMjcf(const std::string& text, const std::string& path,
                    const FindPackage& find_package);
+
+/// Two coupled joints (<mimic>):
+///
+///   q_follower = multiplier q_leader + offset
+struct Coupling {
+  std::string follower;
+  std::string leader;
+  double multiplier = 1.0;
+  double offset = 0.0;
+};
+
+struct Urdf {
+  ModelText model;
+  UrdfFacts facts;
+  std::vector<Coupling> couplings;  ///< from the <mimic> elements
+  bool contacts = false;            ///< true: a <mujoco> block asks for contacts
+};
+
+/// Checks a URDF file and rewrites the parts that MuJoCo would misread.
+/// @param path  path of the file; relative names count from its folder
+/// @throws std::invalid_argument naming element, value, rule and remedy
+Urdf readUrdf(const std::string& text, const std::string& path, const FindPackage& find_package);
 
 /// Path of package://PACKAGE/PATH or file://PATH. Returns other names unchanged.
 /// @throws std::invalid_argument with the name and the remedy if the package cannot be found

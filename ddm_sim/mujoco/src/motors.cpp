@@ -10,8 +10,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "refuse.h"
-
 namespace ddm {
 namespace {
 
@@ -95,10 +93,6 @@ Motor namedMotor(const MujocoModel& model, const std::string& name) {
   return motor;
 }
 
-bool isIn(const Texts& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
 }  // namespace
 
 std::vector<Motor> motorsOf(const MujocoModel& model, const MujocoOptions& options) {
@@ -180,7 +174,9 @@ MotorChoice chosenMotors(const MujocoModel& model, const std::vector<ModelJoint>
   for (MotorChoice choice : choices) {
     Texts chosen;
     for (const std::string& name : choice.joints) {
-      if (isIn(candidates, name) && !isIn(chosen, name)) chosen.push_back(name);
+      const bool can_move = std::count(candidates.begin(), candidates.end(), name) > 0;
+      const bool is_new = std::count(chosen.begin(), chosen.end(), name) == 0;
+      if (can_move && is_new) chosen.push_back(name);
     }
     if (chosen.empty() || chosen.size() > kMaxMotors) continue;
     choice.joints = chosen;

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_mujoco/mujoco_model.h"
 
-#include <ddm_common/option_checks.h>
-
 #include <algorithm>
 #include <boost/algorithm/string/case_conv.hpp>
 #include <boost/algorithm/string/join.hpp>
@@ -15,8 +13,6 @@
 #include <utility>
 
 #include "model_files.h"
-#include "refuse.h"
-#include "urdf.h"
 #include "xml_text.h"
 
 namespace ddm {
@@ -243,7 +239,7 @@ std::vector<std::string> MujocoModel::names(mjtObj type) const {
   const int count = type == mjOBJ_JOINT  ? model_->njnt
                     : type == mjOBJ_SITE ? model_->nsite
                     : type == mjOBJ_BODY ? model_->nbody
-                                         : 0;
+                                         : model_->ncam;
   for (int i = 0; i < count; ++i) out.push_back(name(type, i));
   return out;
 }

@@ -9,36 +9,6 @@
 #include "ddm_mujoco/rewards.h"
 
 namespace ddm {
-namespace {
-
-void checkLook(const RenderOptions& look, int image_size, OptionChecks* plant) {
-  // Side of the drawn image, which needs 1 GB of memory with samples [pixels]
-  constexpr int kMaxSize = 4096;
-  const auto requirePoint = [plant](const std::string& key, const std::vector<double>& point) {
-    const bool finite =
-        std::all_of(point.begin(), point.end(), [](double x) { return std::isfinite(x); });
-    plant->require(point.empty() || (point.size() == 3 && finite), key,
-                   "be a point of three finite numbers", std::to_string(point.size()) + " of them");
-  };
-  requirePoint("camera_position", look.position);
-  requirePoint("camera_look_at", look.look_at);
-  plant->require(look.position.empty() == look.look_at.empty(), "camera_look_at",
-                 "be given where camera_position is",
-                 look.position.empty() ? "no position" : "no point to look at");
-  plant->require(look.position.empty() || look.position != look.look_at, "camera_look_at",
-                 "differ from camera_position", "the same");
-  plant->require(look.camera.empty() || look.position.empty(), "camera",
-                 "be left out where camera_position is given", look.camera);
-  plant->require(look.samples == 0 || look.samples == 4, "samples", "be 0 or 4", look.samples);
-  plant->requireWithin("supersampling", look.supersampling, 1, 8);
-  const int size = image_size * look.supersampling;
-  plant->require(size <= kMaxSize, "supersampling",
-                 "times image_size be at most " + std::to_string(kMaxSize) + " pixels", size);
-  plant->requireWithin("camera_shift", look.camera_shift, 0.0, 1.0);
-  plant->requireWithin("colour_shift", look.colour_shift, 0.0, 1.0);
-}
-
-}  // namespace
 
 std::vector<std::string> MujocoOptions::problems() const {
   OptionChecks plant("plant");
@@ -50,6 +20,11 @@ std::vector<std::string> MujocoOptions::problems() const {
     for (const double number : numbers) plant.require(ok(number), key, rule, number);
   };
   const auto finite = [](double x) { return std::isfinite(x); };
+  const auto requirePoint = [&](const char* key, const std::vector<double>& point) {
+    plant.require(point.empty() || point.size() == 3, key, "be a point of three numbers",
+                  std::to_string(point.size()) + " of them");
+    each(point, key, "be finite", finite);
+  };
   each(start, "start", "be finite", finite);
   each(start_uniform, "start_uniform", "be >= 0 and finite", isNotNegative);
   each(goal, "goal", "be finite", finite);
@@ -59,8 +34,6 @@ std::vector<std::string> MujocoOptions::problems() const {
   plant.require(
       goal_distance.empty() || (goal_distance.size() == 2 && goal_distance[0] <= goal_distance[1]),
       "goal_distance", "be the least and the largest distance", goal_distance.size());
-  plant.require(error_joints.empty() || error_sites.empty(), "error_sites",
-                "be left out where plant/error_joints is given", error_sites.size());
   plant.requireNotNegative("timestep", timestep);
   plant.requirePositive("tolerance", tolerance);
   plant.requireWithin("episode_frames", episode_frames, 0, 10000000);
@@ -69,7 +42,23 @@ std::vector<std::string> MujocoOptions::problems() const {
   plant.require(reward.empty() || std::count(names.begin(), names.end(), reward) > 0, "reward",
                 "be empty or one of those that there are",
                 reward + ": " + suggestion(reward, names));
-  checkLook(look, image_size, &plant);
+  requirePoint("camera_position", look.position);
+  requirePoint("camera_look_at", look.look_at);
+  plant.require(look.position.empty() == look.look_at.empty(), "camera_look_at",
+                "be given where camera_position is",
+                look.position.empty() ? "no position" : "no point to look at");
+  plant.require(look.position.empty() || look.position != look.look_at, "camera_look_at",
+                "differ from camera_position", "the same");
+  plant.require(look.camera.empty() || look.position.empty(), "camera",
+                "be left out where camera_position is given", look.camera);
+  plant.requireWithin("supersampling", look.supersampling, 1, 8);
+  // A larger image would need too much memory.
+  constexpr int kMaxSize = 4096;
+  plant.require(image_size * look.supersampling <= kMaxSize, "supersampling",
+                "times image_size be at most " + std::to_string(kMaxSize) + " pixels",
+                image_size * look.supersampling);
+  plant.requireWithin("camera_shift", look.camera_shift, 0.0, 1.0);
+  plant.requireWithin("colour_shift", look.colour_shift, 0.0, 1.0);
   return plant.problems();
 }
 

@@ -12,7 +12,6 @@
 #include "ddm_sim/angles.h"
 #include "ddm_sim/plant.h"
 #include "load_model.h"
-#include "refuse.h"
 
 namespace ddm {
 namespace {

@@ -11,7 +11,6 @@
 #include "ddm_sim/plant.h"
 #include "motors.h"
 #include "mujoco_physics.h"
-#include "refuse.h"
 
 namespace ddm {
 namespace {
@@ -83,19 +82,14 @@ std::vector<std::string> torqueNames(const MujocoModel& model, const MujocoOptio
   return names;
 }
 
-/// Joints whose error is measured. Empty if the options measure the error of sites.
+/// Joints whose error is measured: all hinges, or all slides if there are no hinges, because angles
+/// and lengths cannot be compared. Empty if the options measure the error of sites.
 std::vector<int> errorJoints(const MujocoModel& model, const MujocoOptions& options) {
-  std::vector<int> joints;
-  if (!options.error_sites.empty()) return joints;
-  for (const std::string& name : options.error_joints) {
-    joints.push_back(model.id(mjOBJ_JOINT, name, "plant/error_joints"));
+  std::vector<int> hinges, slides;
+  for (int i = 0; options.error_sites.empty() && i < model.get().njnt; ++i) {
+    (isHinge(model, i) ? hinges : slides).push_back(i);
   }
-  for (int i = 0; options.error_joints.empty() && i < model.get().njnt; ++i) joints.push_back(i);
-  const auto as_first = [&](int i) { return isHinge(model, i) == isHinge(model, joints[0]); };
-  if (std::all_of(joints.begin(), joints.end(), as_first)) return joints;
-  refuseModel(
-      "plant/error_joints must be hinges or slides alone, whose errors have one unit, got both: "
-      "list some of them, or sites or links in plant/error_sites");
+  return hinges.empty() ? slides : hinges;
 }
 
 int evaluationSteps(const MujocoOptions& options, int frames) {
@@ -126,7 +120,7 @@ PlantInfo infoOf(const MujocoModel& model, const MujocoOptions& options) {
   if (info.torque_names.size() != limits.size()) {
     refuseModel("plant/torque_names must have a name for each motor, got ", info.torqueDim());
   }
-  info.max_torque = forEach(limits, info.torqueDim(), "plant/max_torque");
+  info.max_torque = Eigen::Map<const Eigen::VectorXd>(limits.data(), info.torqueDim());
   info.dt = options.dt;
   info.start = stateOf(options.start, n, "start");
   if (options.start.empty()) std::copy_n(m.qpos0, n, info.start.data());
@@ -163,7 +157,6 @@ RenderOptions viewLook(const MujocoOptions& options) {
   look.width = 640;
   look.height = 480;
   look.colour = look.for_people = true;
-  look.samples = 4;
   look.supersampling = 1;
   return look;
 }
@@ -194,8 +187,8 @@ MujocoPlant::MujocoPlant(std::shared_ptr<const MujocoModel> model, const MujocoO
       visible_sites_(places(*model_, options.visible_sites, "plant/visible_sites")),
       goal_site_(places(*model_, {options.goal_site}, "plant/goal_site")),
       goal_distance_(options.goal_distance),
-      image_(std::make_unique<Renderer>(model_->share(), imageLook(options))),
-      view_(std::make_unique<Renderer>(model_->share(), viewLook(options))),
+      image_(std::make_unique<Renderer>(model_, imageLook(options))),
+      view_(std::make_unique<Renderer>(model_, viewLook(options))),
       reward_(rewardOf(options, info())),
       reward_scale_(info().max_torque) {
   const std::vector<Motor> motors = motorsOf(*model_, options);

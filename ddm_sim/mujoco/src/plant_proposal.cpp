@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <boost/algorithm/string/join.hpp>
 #include <cmath>
+#include <iomanip>
 #include <random>
 #include <stdexcept>
 
-#include "camera_placement.h"
 #include "ddm_sim/angles.h"
 #include "mechanism.h"
 #include "motors.h"
@@ -33,14 +33,8 @@ constexpr double kSeconds = 2.0;   // duration of a simulation [s]
 constexpr double kHold = 0.3;      // time for which a random torque is constant [s]
 constexpr double kStartStd = 0.1;  // standard deviation of the initial state [rad]
 
-std::string shortText(double number, const char* format = "%.3g") {
-  char out[32];
-  std::snprintf(out, sizeof(out), format, number);
-  return out;
-}
-
 /// Rounds to two significant digits.
-double rounded(double number) { return std::stod(shortText(number, "%.2g")); }
+double rounded(double number) { return std::stod(textOf(std::setprecision(2), number)); }
 
 /// Rounds angles near a multiple of pi/2 to that multiple, and all other positions to three
 /// decimals.
@@ -201,9 +195,9 @@ class Proposer {
       }
       limits.push_back(needed);
       reasons.push_back(joint + ": estimated from weight and inertia, because the file " +
-                        (allowed > 0.0
-                             ? "allows " + shortText(allowed) + ", far more than the joint needs"
-                             : "has no limit"));
+                        (allowed > 0.0 ? textOf("allows ", std::setprecision(3), allowed,
+                                                ", far more than the joint needs")
+                                       : "has no limit"));
       if (allowed == 0.0 && out_.to_set.back() != "max_torque") out_.to_set.push_back("max_torque");
     }
     out_.reasons["max_torque"] = join(reasons, "; ");
@@ -274,24 +268,27 @@ class Proposer {
     const double frames = std::max(1.0, std::floor(dt / timestep + 1e-6));
     out_.options.dt = std::max(timestep * frames, timestep * std::ceil(1e-3 / timestep));
     out_.reasons["dt"] = "under random torques and in a fall the fastest joint moves by up to " +
-                         shortText(fast * out_.options.dt, "%.2g") +
+                         textOf(std::setprecision(2), fast * out_.options.dt) +
                          " rad (slides: half sizes of the robot) between two images";
   }
 
   void proposeSuccess() {
-    Texts hinges, slides;
+    Texts slides;
     double shortest = 1e300;
     out_.feature_dim = 0;
     for (const ModelJoint& joint : out_.joints) {
-      (joint.isHinge() ? hinges : slides).push_back(joint.name);
-      if (!joint.isHinge()) shortest = std::min(shortest, joint.shown_upper - joint.shown_lower);
+      if (!joint.isHinge()) {
+        slides.push_back(joint.name);
+        shortest = std::min(shortest, joint.shown_upper - joint.shown_lower);
+      }
       out_.feature_dim += joint.turnsFar() ? 2 : 1;
     }
     out_.feature_dim = std::max(2, out_.feature_dim);
-    out_.options.tolerance = hinges.empty() ? rounded(0.05 * shortest) : 10.0;
-    if (!hinges.empty() && !slides.empty()) {
-      out_.options.error_joints = hinges;
-      out_.reasons["error_joints"] = "the positions of " + join(slides, ", ") + " do not count";
+    const bool has_hinges = slides.size() < out_.joints.size();
+    out_.options.tolerance = has_hinges ? 10.0 : rounded(0.05 * shortest);
+    if (has_hinges && !slides.empty()) {
+      out_.reasons["tolerance"] = "the positions of " + join(slides, ", ") +
+                                  " do not count; to measure sites or links, add error_sites";
     }
     out_.to_set.push_back("tolerance");
   }
@@ -318,7 +315,7 @@ class Proposer {
 
   void proposeCamera() {
     out_.options.look.supersampling = 4;
-    out_.options.look = placedCamera(*model_, mechanism_, withLimits(), out_.options.look);
+    out_.options.look = placedCamera(model_, mechanism_, withLimits(), out_.options.look);
   }
 
   std::shared_ptr<const MujocoModel> model_;

@@ -2,22 +2,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_mujoco/renderer.h"
 
+#include <ddm_common/random_stream.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <cstdint>
-#include <mutex>
+#include <random>
 #include <set>
-#include <sstream>
-#include <stdexcept>
-#include <string>
 #include <utility>
-#include <vector>
 
-#include "ddm_mujoco/mujoco_model.h"
 #include "ddm_sim/angles.h"
 #include "egl_context.h"
-#include "scene.h"
 
 namespace ddm {
 namespace {
@@ -25,15 +21,28 @@ namespace {
 constexpr double kDegree = kPi / 180.0;
 constexpr int kMaxDecor = 1000;  // drawn objects that are not geoms: sites, tendons, joints
 constexpr int kNoCamera = -1;
-constexpr int kNumShown = 3;  // MuJoCo draws the groups of geoms below this number
+constexpr int kNumShown = 3;      // MuJoCo draws the groups of geoms below this number
+constexpr double kNearest = 0.5;  // relative change of the camera's distance at a share of 1 [-]
+// Value by which MuJoCo marks a geom that has the colour of its material.
+constexpr std::array<float, 4> kUnset = {0.5F, 0.5F, 0.5F, 1.0F};
+
+/// Copies an array into `owner` and returns the copy's address.
+template <class Value>
+Value* copied(const Value* values, int count, std::vector<Value>* owner) {
+  owner->assign(values, values + count);
+  return owner->data();
+}
+
+bool hasColourOfMaterial(const mjModel& model, int geom) {
+  return model.geom_matid[geom] >= 0 &&
+         std::equal(kUnset.begin(), kUnset.end(), model.geom_rgba + 4 * geom);
+}
 
 /// Whether a geom is opaque enough to be visible and belongs to a body that a joint can move.
 bool couldBeSeen(const mjModel& model, int geom) {
-  const float* rgba = model.geom_rgba + 4 * geom;
-  const int material = model.geom_matid[geom];
-  if (material >= 0 && std::equal(kUnset.begin(), kUnset.end(), rgba)) {
-    rgba = model.mat_rgba + 4 * material;
-  }
+  const float* const rgba = hasColourOfMaterial(model, geom)
+                                ? model.mat_rgba + 4 * model.geom_matid[geom]
+                                : model.geom_rgba + 4 * geom;
   return rgba[3] > 0.0F && model.body_weldid[model.geom_bodyid[geom]] != 0;
 }
 
@@ -48,22 +57,11 @@ int groupToShow(const mjModel& model) {
 
 /// @return index of the camera in the model, or kNoCamera if the options place a camera
 /// @throws std::invalid_argument if the model has no such camera
-int findCamera(const mjModel& model, const RenderOptions& options) {
+int findCamera(const MujocoModel& model, const RenderOptions& options) {
   if (!options.position.empty()) return kNoCamera;
-  if (options.camera.empty() && model.ncam > 0) return 0;
-  const int index = mj_name2id(&model, mjOBJ_CAMERA, options.camera.c_str());
-  if (index >= 0) return index;
-  if (options.camera.empty()) {
-    throw std::invalid_argument(
-        "the model has no camera: give plant/camera_position and plant/camera_look_at");
-  }
-  std::vector<std::string> names;
-  for (int i = 0; i < model.ncam; ++i) {
-    const char* name = mj_id2name(&model, mjOBJ_CAMERA, i);
-    if (name != nullptr) names.emplace_back(name);
-  }
-  throw std::invalid_argument("plant/camera must be a camera of the model, got \"" +
-                              options.camera + "\": " + suggestion(options.camera, names));
+  if (!options.camera.empty()) return model.id(mjOBJ_CAMERA, options.camera, "plant/camera");
+  if (model.get().ncam > 0) return 0;
+  refuseModel("the model has no camera: give plant/camera_position and plant/camera_look_at");
 }
 
 /// A camera at `position`. The upper edge of its image points to +z, or to +y for a camera that
@@ -113,13 +111,115 @@ RenderedImage averaged(const std::vector<std::uint8_t>& drawn, int width, int he
 void requireNoError(const char* what) {
   const int error = mjr_getError();
   if (error == 0) return;
-  std::ostringstream message;
-  message << what << " of a MuJoCo model failed, OpenGL error 0x" << std::hex << error
-          << (error == 0x505 ? ": out of memory" : "");
-  throw std::runtime_error(message.str());
+  throw std::runtime_error(textOf(what, " of a MuJoCo model failed, OpenGL error 0x", std::hex,
+                                  error, error == 0x505 ? ": out of memory" : ""));
 }
 
 }  // namespace
+
+/// Each disturbance has its own random stream, so that one disturbance does not change another.
+enum Part : std::uint32_t { kCameraPart, kColourPart };
+
+/// Random numbers, uniform in [-share, share].
+class Shift {
+ public:
+  Shift(Part part, double share)
+      : rng_(randomStream({0, part, false}, StreamRole::kScene)), uniform_(-share, share) {}
+
+  double operator()() { return uniform_(rng_); }
+
+  /// Adds random numbers to the red, green and blue of `count` objects. Opacity stays unchanged.
+  void shiftColours(int count, float* rgba) {
+    for (int i = 0; i < count; ++i) {
+      for (int channel = 0; channel < 3; ++channel) {
+        float& value = rgba[4 * i + channel];
+        value = std::clamp(value + static_cast<float>(uniform_(rng_)), 0.0F, 1.0F);
+      }
+    }
+  }
+
+ private:
+  std::mt19937_64 rng_;
+  std::uniform_real_distribution<double> uniform_;
+};
+
+/// A copy of a model's appearance with disturbances of colours and camera. The original model,
+/// which the physics uses, stays unchanged.
+class Scene {
+ public:
+  Scene(std::shared_ptr<const MujocoModel> model, const RenderOptions& options)
+      : model_(std::move(model)), appearance_(model_->get()), turn_(Eigen::Matrix3f::Identity()) {
+    if (options.camera_shift > 0.0) drawCamera(options.camera_shift);
+    if (options.colour_shift > 0.0) drawColours(options.colour_shift);
+  }
+  Scene(const Scene&) = delete;  // appearance() points into this object
+  Scene& operator=(const Scene&) = delete;
+
+  /// The model with changed colours, to be used for drawing only. This object owns it.
+  mjModel& appearance() { return appearance_; }
+
+  /// Moves the camera of a drawn scene around the point that it looks at.
+  void moveCamera(mjvGLCamera* camera) const {
+    using Vector = Eigen::Map<Eigen::Vector3f>;
+    Vector position(camera->pos), forward(camera->forward), up(camera->up);
+    Eigen::Matrix3f axes;  // axes of the camera in the world: right, up, backwards
+    axes << forward.cross(up), up, -forward;
+    const Eigen::Vector3f middle =
+        Eigen::Map<const Eigen::Vector3d>(appearance_.stat.center).cast<float>();
+    const float distance = std::max((middle - position).dot(forward), camera->frustum_near);
+    const Eigen::Vector3f target = position + distance * forward;
+    const Eigen::Matrix3f turned = axes * turn_;
+    up = turned.col(1);
+    forward = -turned.col(2);
+    position = target - nearer_ * distance * forward;
+  }
+
+ private:
+  void drawCamera(double share) {
+    Shift shift(kCameraPart, share);
+    const auto turn = [&shift](const Eigen::Vector3f& axis) {
+      return Eigen::AngleAxisf(static_cast<float>(0.5 * kPi * shift()), axis);
+    };
+    turn_ = turn(Eigen::Vector3f::UnitY());
+    turn_ = turn_ * turn(Eigen::Vector3f::UnitX());
+    turn_ = turn_ * turn(Eigen::Vector3f::UnitZ());
+    nearer_ = static_cast<float>(1.0 + kNearest * shift());
+  }
+
+  void drawColours(double share) {
+    Shift shift(kColourPart, share);
+    const mjModel& m = model_->get();
+    appearance_.geom_rgba = copied(m.geom_rgba, 4 * m.ngeom, &geom_rgba_);
+    appearance_.site_rgba = copied(m.site_rgba, 4 * m.nsite, &site_rgba_);
+    appearance_.mat_rgba = copied(m.mat_rgba, 4 * m.nmat, &mat_rgba_);
+    appearance_.tex_rgb = copied(m.tex_rgb, m.ntexdata, &tex_rgb_);
+    shift.shiftColours(m.ngeom, appearance_.geom_rgba);
+    // A geom whose colour differs from kUnset no longer shows its material. Such geoms keep kUnset.
+    for (int i = 0; i < m.ngeom; ++i) {
+      if (hasColourOfMaterial(m, i)) {
+        std::copy(kUnset.begin(), kUnset.end(), appearance_.geom_rgba + 4 * i);
+      }
+    }
+    shift.shiftColours(m.nsite, appearance_.site_rgba);
+    shift.shiftColours(m.nmat, appearance_.mat_rgba);
+    for (int i = 0; i < m.ntex; ++i) {
+      const std::array<double, 3> change = {shift(), shift(), shift()};
+      mjtByte* const texel = appearance_.tex_rgb + m.tex_adr[i];
+      for (int k = 0; k < 3 * m.tex_width[i] * m.tex_height[i]; ++k) {
+        const double value = texel[k] + 255.0 * change[static_cast<std::size_t>(k % 3)];
+        texel[k] = static_cast<mjtByte>(std::clamp(value, 0.0, 255.0) + 0.5);
+      }
+    }
+  }
+
+  std::shared_ptr<const MujocoModel> model_;
+  mjModel appearance_;  ///< uses the arrays of model_ except for the following colours
+  std::vector<float> geom_rgba_, site_rgba_, mat_rgba_;
+  std::vector<mjtByte> tex_rgb_;
+  Eigen::Matrix3f turn_;  ///< rotation of the camera, in its own frame
+  /// New distance to the point that the camera looks at, divided by the old one.
+  float nearer_ = 1.0F;
+};
 
 std::string openGlRenderer() {
   const EglContext context;
@@ -146,13 +246,13 @@ RenderedImage greyOf(const RenderedImage& rendered) {
   return grey;
 }
 
-Renderer::Renderer(const std::shared_ptr<const mjModel>& model, const RenderOptions& options)
+Renderer::Renderer(const std::shared_ptr<const MujocoModel>& model, const RenderOptions& options)
     : options_(options), scene_(std::make_unique<Scene>(model, options)) {
   mjModel& look = scene_->appearance();
   look.vis.global.offwidth = options_.width * options_.supersampling;
   look.vis.global.offheight = options_.height * options_.supersampling;
-  look.vis.quality.offsamples = options_.samples;
-  const int index = findCamera(look, options_);
+  look.vis.quality.offsamples = options_.for_people ? 4 : 0;
+  const int index = findCamera(*model, options_);
   if (index == kNoCamera) {
     look.vis.global.fovy = static_cast<float>(RenderOptions::kFieldOfView);
     camera_ = placed(options_.position, options_.look_at);
@@ -234,14 +334,6 @@ void Renderer::updateScene(const mjData& data) {
 void Renderer::openContext() {
   auto context = std::make_unique<EglContext>();
   const EglContext::Current current(*context);
-  const auto& size = scene_->appearance().vis.global;
-  const int side = std::max(size.offwidth, size.offheight);
-  if (side > context->maxSize()) {
-    throw std::runtime_error("an image with a side of " + std::to_string(side) +
-                             " pixels, supersampling included, is too large for this OpenGL "
-                             "driver, which can draw " +
-                             std::to_string(context->maxSize()));
-  }
   makeGpuContext();
   mjr_setBuffer(mjFB_OFFSCREEN, &gpu_);
   if (gpu_.currentBuffer != mjFB_OFFSCREEN) {
@@ -260,13 +352,11 @@ void Renderer::makeGpuContext() {
   try {
     mjr_makeContext(&look, &gpu_, mjFONTSCALE_50);
   } catch (const std::runtime_error& e) {
-    std::ostringstream message;
-    message << "OpenGL cannot draw images of " << look.vis.global.offwidth << " x "
-            << look.vis.global.offheight << " pixels, supersampling included, with "
-            << look.vis.quality.offsamples << " samples and a shadow map of "
-            << look.vis.quality.shadowsize << ": " << e.what()
-            << "; free some memory, or make them smaller";
-    throw std::runtime_error(message.str());
+    throw std::runtime_error(textOf(
+        "OpenGL cannot draw images of ", look.vis.global.offwidth, " x ", look.vis.global.offheight,
+        " pixels, supersampling included, with ", look.vis.quality.offsamples,
+        " samples and a shadow map of ", look.vis.quality.shadowsize, ": ", e.what(),
+        "; free some memory, or make them smaller"));
   }
 }
 

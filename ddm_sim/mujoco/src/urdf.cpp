@@ -1,7 +1,5 @@
 // Checks a URDF file and rewrites the parts that MuJoCo would misread.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "urdf.h"
-
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <boost/algorithm/string/case_conv.hpp>
@@ -112,11 +110,9 @@ void keepWhatMujocoReads(XMLElement* robot, UrdfFacts* facts) {
     const XMLElement* const joint = transmission->FirstChildElement("joint");
     if (joint != nullptr) facts->transmissions.push_back(attribute(*joint, "name"));
   }
-  for (auto* child = robot->FirstChildElement(); child != nullptr;) {
-    auto* const next = child->NextSiblingElement();
+  for (XMLElement* child : children(*robot)) {
     const bool read = isOneOf({"link", "joint", "material", "mujoco"}, child->Value());
     if (!read) robot->DeleteChild(child);
-    child = next;
   }
 }
 

@@ -232,8 +232,7 @@ void requireNoCycle(const std::map<std::string, std::string>& leaders) {
 
 void requireKnownBlock(const XMLElement& block) {
   const std::vector<std::string> elements = {"compiler", "option", "size"};
-  for (const auto* one = block.FirstChildElement(); one != nullptr;
-       one = one->NextSiblingElement()) {
+  for (const XMLElement* one : children(block)) {
     if (isOneOf(elements, one->Value())) continue;
     refuseElement(*one, "must not be in the <mujoco> block of a URDF, in which MuJoCo reads ",
                   join(elements, ", "), " alone: leave it out, or write MJCF");

@@ -119,10 +119,7 @@ std::string xmlText(const tinyxml2::XMLDocument& document) {
 
 void forEachElement(XMLElement* element, const std::function<void(XMLElement*)>& visit) {
   visit(element);
-  for (auto* child = element->FirstChildElement(); child != nullptr;
-       child = child->NextSiblingElement()) {
-    forEachElement(child, visit);
-  }
+  for (XMLElement* child : children(*element)) forEachElement(child, visit);
 }
 
 std::vector<XMLElement*> children(const XMLElement& parent, const char* name) {

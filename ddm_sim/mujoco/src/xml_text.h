@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "refuse.h"
+#include "ddm_mujoco/mujoco_model.h"
 
 namespace ddm {
 
@@ -31,8 +31,8 @@ std::string xmlText(const tinyxml2::XMLDocument& document);
 /// Calls `visit` for an element and for all elements within it, outer elements first.
 void forEachElement(XMLElement* element, const std::function<void(XMLElement*)>& visit);
 
-/// Child elements with this name; deeper levels are not searched.
-std::vector<XMLElement*> children(const XMLElement& parent, const char* name);
+/// Child elements with this name, or all child elements; deeper levels are not searched.
+std::vector<XMLElement*> children(const XMLElement& parent, const char* name = nullptr);
 
 /// Value of an attribute. Empty if the attribute does not exist.
 inline std::string attribute(const XMLElement& element, const char* name) {

@@ -208,11 +208,13 @@ TEST(MujocoPlant, MeasuresTheErrorOfTheJointsOrSitesThatCount) {
   const Eigen::Vector4d state(1.0 + 2.0 * kPi, 0.5 + 0.2, 9.0, 9.0);
   EXPECT_NEAR(arm()->goalError(state), 0.2 * 180.0 / kPi, 1e-9);
   MujocoOptions options = armOptions();
-  options.error_joints = {"shoulder"};
-  EXPECT_NEAR(arm(options)->goalError(state), 0.0, 1e-9);
-  options.error_joints.clear();
   options.error_sites = {"tip"};
   EXPECT_NEAR(arm(options)->goalError(state), 2.0 * 0.1 * std::sin(0.1), 1e-12);
+  // Hinges count before slides.
+  std::string text = armText();
+  const std::string hinge = "name=\"elbow\" axis=\"0 0 1\"";
+  text.replace(text.find(hinge), hinge.size(), "name=\"elbow\" type=\"slide\"");
+  EXPECT_NEAR(plantOf(text, armOptions())->goalError(state), 0.0, 1e-9);
 }
 
 }  // namespace

@@ -80,7 +80,7 @@ TEST(Renderer, ShowsThingsWhereACameraWithItsModelSeesThem) {
       const CameraModel camera = renderer.camera(*scene.data);
       EXPECT_EQ(camera.name, name);
       EXPECT_TRUE(camera.fixed);
-      const int geom = mj_name2id(scene.model.get(), mjOBJ_GEOM, "ball");
+      const int geom = mj_name2id(&scene.model->get(), mjOBJ_GEOM, "ball");
       const Eigen::Vector3d world(scene.data->geom_xpos + 3 * geom);
       const Eigen::Vector3d seen = camera.rotation.transpose() * (world - camera.position);
       ASSERT_GT(seen.z(), 0.0);
@@ -179,7 +179,7 @@ TEST(Renderer, RefusesAModelWithoutACameraNamingTheKeysThatPlaceOne) {
   const auto bare =
       testing::ModelFolder().loadText("<mujoco><worldbody><geom size='1'/></worldbody></mujoco>");
   EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-      [&bare] { Renderer(bare->share(), RenderOptions()); },
+      [&bare] { Renderer(bare, RenderOptions()); },
       {"no camera", "plant/camera_position", "plant/camera_look_at"}));
 }
 
@@ -188,8 +188,8 @@ double RenderOptions::*const kShifts[] = {&RenderOptions::camera_shift,
 
 TEST(SceneDisturbances, ChangeTheImageMoreOrLessAndTheModelNever) {
   const SceneModel scene(0.4);
-  const int colours = 4 * scene.model->ngeom;
-  const std::vector<float> before(scene.model->geom_rgba, scene.model->geom_rgba + colours);
+  const mjModel& model = scene.model->get();
+  const std::vector<float> before(model.geom_rgba, model.geom_rgba + 4 * model.ngeom);
   const Bytes plain = drawn(scene, colourful()).bytes;
   for (const auto shift : kShifts) {
     RenderOptions options = colourful();
@@ -200,8 +200,8 @@ TEST(SceneDisturbances, ChangeTheImageMoreOrLessAndTheModelNever) {
     options.*shift = 0.2;
     EXPECT_NE(drawn(scene, options).bytes, once);
   }
-  EXPECT_EQ(std::vector<float>(scene.model->geom_rgba, scene.model->geom_rgba + colours), before);
-  EXPECT_EQ(scene.model->cam_pos[1], -4.0);
+  EXPECT_EQ(std::vector<float>(model.geom_rgba, model.geom_rgba + 4 * model.ngeom), before);
+  EXPECT_EQ(model.cam_pos[1], -4.0);
 }
 
 TEST(SceneDisturbances, MoveTheCameraAroundThePointThatItLooksAt) {
@@ -213,7 +213,8 @@ TEST(SceneDisturbances, MoveTheCameraAroundThePointThatItLooksAt) {
   options.camera_shift = 0.1;
   const CameraModel moved = Renderer(scene.model, options).camera(*scene.data);
   const Eigen::Vector3d ahead = plain.rotation.col(2);
-  const double distance = (Eigen::Vector3d(scene.model->stat.center) - plain.position).dot(ahead);
+  const double distance =
+      (Eigen::Vector3d(scene.model->get().stat.center) - plain.position).dot(ahead);
   const Eigen::Vector3d to_target = plain.position + distance * ahead - moved.position;
   EXPECT_TRUE((moved.rotation.transpose() * moved.rotation).isIdentity(1e-5));
   EXPECT_LT(to_target.normalized().cross(moved.rotation.col(2)).norm(), 1e-5);

@@ -5,7 +5,6 @@
 #include <mujoco/mujoco.h>
 
 #include <memory>
-#include <stdexcept>
 #include <string>
 
 #include "ddm_mujoco/mujoco_model.h"
@@ -17,22 +16,13 @@ namespace testing {
 /// A model, and its data with the first joint at an angle [rad].
 struct SceneModel {
   explicit SceneModel(double angle = 0.0) {
-    installMujocoHandlers();
-    char problem[500] = "";
-    model.reset(mj_loadXML(DDM_MUJOCO_TEST_SCENE, nullptr, problem, sizeof(problem)),
-                mj_deleteModel);
-    if (!model) throw std::runtime_error(problem);
-    data.reset(mj_makeData(model.get()), mj_deleteData);
-    turn(angle);
-  }
-
-  void turn(double angle) {
     data->qpos[0] = angle;
-    mj_forward(model.get(), data.get());
+    mj_forward(&model->get(), data.get());
   }
 
-  std::shared_ptr<mjModel> model;
-  std::shared_ptr<mjData> data;
+  const std::shared_ptr<const MujocoModel> model = std::make_shared<MujocoModel>(
+      DDM_MUJOCO_TEST_SCENE, [](const std::string& /*package*/) { return ""; });
+  const std::shared_ptr<mjData> data{mj_makeData(&model->get()), mj_deleteData};
 };
 
 inline RenderOptions colourful(const std::string& camera = "front") {

@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ddm_common/option_checks.h>
 #include <mujoco/mujoco.h>
 
 #include <functional>
 #include <map>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -16,10 +18,11 @@ namespace ddm {
 /// Returns the folder of a ROS package, or an empty text if no package has this name.
 using FindPackage = std::function<std::string(const std::string& package)>;
 
-/// Makes MuJoCo throw std::runtime_error where MuJoCo would otherwise wait for a key, exit, or
-/// write MUJOCO_LOG.TXT into the working folder. Call this function before any other function of
-/// MuJoCo. Further calls have no effect. The constructor of MujocoModel calls this function.
-void installMujocoHandlers();
+/// @throws std::invalid_argument with the concatenated parts; the function never returns
+template <class... Parts>
+[[noreturn]] void refuseModel(const Parts&... parts) {
+  throw std::invalid_argument(textOf(parts...));
+}
 
 /// An object with a position in the world: a site, or the centre of mass of a body (a "link" in a
 /// URDF). The origin of a body would not do: it often lies on the axis of the joint that turns the
@@ -59,14 +62,13 @@ class MujocoModel {
 
   const std::string& uri() const { return uri_; }
   const mjModel& get() const { return *model_; }
-  std::shared_ptr<const mjModel> share() const { return model_; }
 
   /// Checksum over the bytes of the model file and of all files that it names: "crc32-" and eight
   /// hexadecimal digits.
   const std::string& digest() const { return digest_; }
 
   /// Index of the object with this name.
-  /// @param type  mjOBJ_JOINT, mjOBJ_SITE, ...
+  /// @param type  mjOBJ_JOINT, mjOBJ_SITE, mjOBJ_BODY or mjOBJ_CAMERA
   /// @param key   YAML key that holds the name, for the error message: "plant/error_sites"
   /// @throws std::invalid_argument with the nearest name and all names, if there is no such object
   int id(mjtObj type, const std::string& name, const std::string& key) const;
@@ -85,7 +87,7 @@ class MujocoModel {
   /// none.
   std::string name(mjtObj type, int id) const;
 
-  /// Names of all objects of this type.
+  /// Names of all objects of this type: joints, sites, bodies or cameras.
   std::vector<std::string> names(mjtObj type) const;
 
  private:

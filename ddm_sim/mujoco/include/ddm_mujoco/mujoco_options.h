@@ -31,8 +31,7 @@ struct MujocoOptions : PlantOptions {
   std::string goal_site;
   /// Smallest and largest distance of that point from 0 [m]
   std::vector<double> goal_distance;
-  std::vector<std::string> error_joints;  ///< joints whose error is measured; empty: all joints
-  /// Alternative: sites and bodies whose distance is measured.
+  /// Sites and bodies whose distance from the goal is measured. Empty: hinges, or else slides.
   std::vector<std::string> error_sites;
   double tolerance = 0.0;  ///< largest error of a reached goal [deg or m]
   /// Positions that the method oracle gets; empty: all bodies.
@@ -62,7 +61,6 @@ struct MujocoOptions : PlantOptions {
     visitor("goal", goal);
     visitor("goal_site", goal_site);
     visitor("goal_distance", goal_distance);
-    visitor("error_joints", error_joints);
     visitor("error_sites", error_sites);
     visitor("tolerance", tolerance);
     visitor("visible_sites", visible_sites);
@@ -74,7 +72,6 @@ struct MujocoOptions : PlantOptions {
     visitor("camera_position", look.position);
     visitor("camera_look_at", look.look_at);
     visitor("colour", look.colour);
-    visitor("samples", look.samples);
     visitor("supersampling", look.supersampling);
     visitor("camera_shift", look.camera_shift);
     visitor("colour_shift", look.colour_shift);

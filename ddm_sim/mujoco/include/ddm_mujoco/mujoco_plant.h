@@ -29,8 +29,9 @@ class MujocoPhysics;
 ///
 /// The goal is the option `goal`. With the option `goal_site` the goal is instead drawn for each
 /// episode: a pose that brings this site to a point of the x-y plane. The error is the largest
-/// distance of a joint from its goal position (angles the short way round [deg], slides [m]), or of
-/// a site from its position in the goal state [m].
+/// distance of a site in `error_sites` from its position in the goal state [m]. Without such sites
+/// it is that of a hinge from its goal angle, the short way round [deg], or, in a model without
+/// hinges, of a slide from its goal position [m].
 class MujocoPlant : public Plant {
  public:
   /// @throws std::invalid_argument with the value, the rule and the remedy if options and model do

@@ -58,16 +58,13 @@ PlantProposal proposePlant(const std::shared_ptr<const MujocoModel>& model,
                            const std::vector<std::string>& motors,
                            const std::vector<double>& max_torque);
 
-/// Speeds of a plant in a simulation, and how much its images change.
+/// How much the images of a plant change.
 struct PlantCheck {
-  double still_speed = 0.0;         ///< largest speed of a joint in 2 s without torque [rad/s, m/s]
-  double random_speed = 0.0;        ///< largest speed under random torques [rad/s, m/s]
   int changed_pixels = 0;           ///< pixels that differ between two poses (median) [-]
   std::vector<std::string> unseen;  ///< joints whose motion does not change the image
 };
 
-/// @param plant  plant with the proposed options; the call changes its state
-/// @throws std::range_error with MuJoCo's reason if the simulation is unstable
-PlantCheck checkPlant(const PlantProposal& proposal, Plant* plant);
+/// @param plant  plant with the proposed options
+PlantCheck checkPlant(const PlantProposal& proposal, const Plant& plant);
 
 }  // namespace ddm

@@ -3,13 +3,14 @@
 #pragma once
 
 #include <ddm_sim/rendered_image.h>
-#include <mujoco/mujoco.h>
 
 #include <cstdint>
 #include <memory>
 #include <mutex>
 #include <string>
 #include <vector>
+
+#include "ddm_mujoco/mujoco_model.h"
 
 namespace ddm {
 
@@ -25,9 +26,10 @@ struct RenderOptions {
   int width = 51;                ///< [pixels]
   int height = 51;               ///< [pixels]
   bool colour = false;           ///< true: RGB, false: grey
-  int samples = 0;               ///< 0, or 4: edges are averaged over four points of a pixel
   int supersampling = 1;         ///< factor by which the image is drawn larger before averaging
-  bool for_people = false;       ///< also draws the geoms and sites of group kPeopleGroup
+  /// Also draws the geoms and sites of group kPeopleGroup, and averages edges over four points of
+  /// each pixel.
+  bool for_people = false;
 
   // Disturbances of the scene, as shares of the largest change. 0: no disturbance, 0.1: easy.
   /// Motion of the camera around the point that it looks at, and rotation.
@@ -60,7 +62,7 @@ class Renderer {
   /// @param options  valid options, see MujocoOptions::problems()
   /// @throws std::invalid_argument with the names of the model's cameras if the model has no camera
   ///         with the name in the options
-  Renderer(const std::shared_ptr<const mjModel>& model, const RenderOptions& options);
+  Renderer(const std::shared_ptr<const MujocoModel>& model, const RenderOptions& options);
   ~Renderer();
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
