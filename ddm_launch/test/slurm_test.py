@@ -13,8 +13,7 @@ from slurm_cluster import SlurmCluster
 from sweeps import (Sweep, assert_ends, assert_nothing_runs, assert_table, debug, is_finished, processes_with, programs_of,
                     seed_folder, snapshot, wait_for)
 
-QUEUED = "echo PENDING; echo RUNNING"
-FORGOTTEN = "echo slurm_load_jobs error: Invalid job id specified >&2; exit 1"
+QUEUED = "echo CLUSTER: west; echo ddm_task PENDING; echo ddm_task RUNNING"
 UNREACHABLE = "echo slurm_load_jobs error: Unable to contact slurm controller >&2; exit 1"
 
 
@@ -28,7 +27,7 @@ def make_cluster(tmp_path_factory):
 
 
 def job_of(output):
-    return re.search(r"Slurm job (\d+)", output).group(1)
+    return re.search(r"Submitted batch job (\d+)", output).group(1)
 
 
 def test_seeds_are_the_tasks_of_a_job_array_and_gnu_parallel_goes_on_where_slurm_ended(cluster, tmp_path):
@@ -58,7 +57,7 @@ def test_the_job_of_a_killed_sweep_goes_on_and_is_waited_for_and_a_cancelled_tas
         process.kill_group()
     job, before = job_of(process.output), snapshot(seed_folder(out, 0))
     cluster.call("scancel", job + "_2")
-    output = assert_ends(0, ["Slurm job %s\n" % job, "1 of 3 seeds to run", "3 of 3 seeds finished"], *words,
+    output = assert_ends(0, ["1 of 3 seeds to run", "3 of 3 seeds finished"], *words,
                          environment=cluster.environment)
     assert "CANCELLED" not in output and snapshot(seed_folder(out, 0)) == before
     assert "JobState=COMPLETED" in cluster.call("scontrol", "show", "job", job + "_1")
@@ -85,9 +84,9 @@ class Site:
     def __init__(self, folder):
         self.folder, self.out, self.started = folder, str(folder / "out"), []
         (folder / "bin").mkdir()
-        self.answer("sbatch", "echo 4711")
+        self.answer("sbatch", "echo Welcome; echo Submitted batch job 4711")
         self.answer("squeue", QUEUED)
-        self.answer("scancel", "echo '%s' > '%s'" % (FORGOTTEN, folder / "squeue_answer"))
+        self.answer("scancel", "true")
 
     def answer(self, name, script):
         """Makes a command run this script from now on. The file is replaced as a whole, because a shell may be
@@ -135,52 +134,43 @@ def assert_end(process, code, *words):
     assert all(word in process.output for word in words) and "not started" not in process.output, process.output
 
 
-@pytest.mark.parametrize("reply", [
-    "Welcome\\n--> 2 allocations: ok\\n4711\\n", "4711\\nPlease acknowledge us in 2026\\n", "sbatch: warning\\n 4711\\r\\n\\n",
-    "12\\n4711\\n", "4711\\nYour quota [h]:\\n37\\n", "Your job:\\n4711\\n"])
-def test_the_number_is_found_among_the_lines_of_a_site(reply, site):
-    site.answer("sbatch", "echo a warning >&2; printf '%s'" % reply)
-    process = site.start_and_watch()
-    process.send(signal.SIGINT)
-    assert_end(process, 130, "Slurm job 4711\n", "SIGINT")
-    assert "--jobs 4711 " in site.calls("squeue")[-1] and site.calls("scancel") == ["4711"]
-    assert "slurm_job" not in files_in(site.out)
-
-
-def test_a_job_outlives_its_sweep_and_its_cluster_is_asked_and_told_to_cancel_it(site):
-    site.answer("sbatch", "echo '4711;west'")
-    site.answer("squeue", "[[ $* = '-M west '* ]] || { %s; }\necho CLUSTER: west; %s" % (FORGOTTEN, QUEUED))
+def test_a_job_outlives_its_sweep_and_its_cluster_is_asked_and_told_to_cancel_it(site, monkeypatch):
+    monkeypatch.setenv("SBATCH_CLUSTERS", "west")
+    monkeypatch.setenv("SQUEUE_STATES", "SUSPENDED")  # would hide tasks
+    site.answer("squeue", "[[ $SLURM_CLUSTERS == west && -z ${SQUEUE_STATES:-} ]] && %s" % QUEUED)
     for number in (signal.SIGHUP, signal.SIGTERM, signal.SIGKILL):
         process = site.start_and_watch()
         process.send(number)
         assert_end(process, *([-number] if number == signal.SIGKILL else [
-            128 + number, "Slurm job 4711 of cluster west may be running", "same command waits for it", "'scancel -M west 4711'"]))
+            128 + number, "the Slurm job ddm_sweep_", "may be running", "same command waits for it", "'scancel --name ddm_sweep_"]))
     # by GNU parallel
-    assert_end(site.start(engine=()), 1, "4711 of cluster west may be running", site.out + "/slurm_job")
+    assert_end(site.start(engine=()), 1, "may be running", site.out + "/slurm_job")
     process = site.start_and_watch()
     process.send(signal.SIGINT)
     assert_end(process, 130)
-    assert len(site.calls("sbatch")) == 1 and site.calls("scancel") == ["-M west 4711"]
+    cancelled, = site.calls("scancel")
+    assert cancelled in site.calls("squeue")[-1] and len(site.calls("sbatch")) == 1
+    assert "slurm_job" not in files_in(site.out)
 
 
 @pytest.mark.parametrize("answer, told", [
-    (UNREACHABLE, True), ("sleep 0.1; exit 3", True), ("echo squeue: error: busy >&2", True),
-    ("echo PREEMPTED; echo NODE_FAIL", False)])  # Slurm may queue such tasks again
+    (UNREACHABLE, True), ("sleep 0.1; exit 3", True), ("echo squeue: error: busy >&2", True), (QUEUED, False)])
 def test_a_job_that_may_be_running_is_waited_for(answer, told, site):
     site.answer("squeue", answer)
     process = site.start_and_watch()
     site.wait_for_questions(2)
     assert process.isRunning() and ("waiting for Slurm" in process.output) == told
-    site.answer("squeue", "echo NOTICE; echo MAINTENANCE; echo COMPLETED; echo CANCELLED")
+    site.answer("squeue", "echo NOTICE; echo MAINTENANCE")
     assert_end(process, 1, "0 of 2 seeds finished")
 
 
 @pytest.mark.parametrize("reply, said", [
-    ("echo Welcome", "Welcome"), ("kill -9 $$", "said nothing"), ("echo 4711; exit 1", "4711"),
-    ("echo 'sbatch: error: Batch job submission failed: Socket timed out' >&2; exit 1", "Socket timed out")])
-def test_a_job_without_a_number_may_be_running(reply, said, site):
+    ("kill -9 $$", "said nothing"), ("echo 'sbatch: error: Socket timed out' >&2; exit 1", "Socket timed out")])
+def test_a_job_that_sbatch_does_not_confirm_is_waited_for_by_the_same_command(reply, said, site):
     site.answer("sbatch", reply)
-    assert_end(site.start(), 1, "may be running", "squeue --me", said)
+    assert_end(site.start(), 1, "same command waits for it", said)
+    site.start_and_watch()
+    assert len(site.calls("sbatch")) == 1
 
 
 def test_indices_are_written_as_ranges():

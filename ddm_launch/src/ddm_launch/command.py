@@ -57,16 +57,6 @@ def raised_as_exception():
             signal.signal(number, handler)
 
 
-@contextlib.contextmanager
-def held_back():
-    """Context that delays signals, for steps that must be completed together."""
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, SIGNALS)
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
 class Failure(Exception):
     """The program cannot continue. The message names the file or value that causes the failure, and the remedy."""
 

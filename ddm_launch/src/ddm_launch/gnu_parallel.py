@@ -8,7 +8,7 @@ import subprocess
 import sys
 
 from ddm_launch.command import Failure
-from ddm_launch.slurm import job_file, remembered
+from ddm_launch.slurm import how_to_go_on, job_file
 from ddm_launch.sweep_folder import DIE_WITH_PARENT
 
 POLL_S = 0.5
@@ -59,9 +59,8 @@ class GnuParallel:
 
     def resume(self, folder, _tick):
         """Raises Failure if a Slurm job array of an earlier call may still be running in this folder."""
-        job = remembered(folder)
-        if job is not None:
-            raise Failure("%s. Delete %s if that job has ended" % (job.how_to_go_on(), job_file(folder)))
+        if how_to_go_on(folder):
+            raise Failure("%s. Delete %s if that job has ended" % (how_to_go_on(folder), job_file(folder)))
 
     def run(self, folder, seeds, tick):
         """Runs the seeds and returns when all have ended, whether they succeed or fail. Calls tick() every POLL_S

@@ -10,7 +10,7 @@ import pandas
 
 from ddm_launch.command import Interrupted, expand_home, number, program_parser, run_program
 from ddm_launch.gnu_parallel import GnuParallel
-from ddm_launch.slurm import SlurmArray, remembered
+from ddm_launch.slurm import SlurmArray, how_to_go_on
 from ddm_launch.sweep_folder import TABLES, SweepFolder
 
 MAX_SEEDS = 100000
@@ -107,9 +107,8 @@ def run_seeds(engine, folder, seeds):
 def report(folder, seeds, start):
     """Collects the tables of all seeds and prints a summary. Returns whether all seeds are finished."""
     finished, problems = folder.collect(seeds)
-    job = remembered(folder)
-    if job is not None:
-        print("sweep: %s" % job.how_to_go_on(), file=sys.stderr)
+    if how_to_go_on(folder):
+        print("sweep: %s" % how_to_go_on(folder), file=sys.stderr)
     elif problems:
         print("\n".join(["sweep: not finished:"] + ["  seed %d: %s" % problem for problem in problems.items()]
                         + ["sweep: the same command resumes where this one ended"]), file=sys.stderr)

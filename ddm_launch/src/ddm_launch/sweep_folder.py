@@ -87,7 +87,7 @@ class SweepFolder:
       seed_NNNN/           results of a seed
       logs/seed_NNNN.log   output of a seed's program in its last run
       joblog.tsv           GNU parallel's job log of the last call
-      slurm_job            number and cluster of a Slurm job array that may be running
+      slurm_job            name of a Slurm job array that may be running
       .lock                host and process of the sweep that uses the folder
       sweep.csv            rows of all finished seeds
 
