@@ -52,15 +52,6 @@ parse_arguments() {
   [[ -z $runs ]] || runs=$(realpath -m -- "$runs")
 }
 
-# Prints a port for the ROS master: the default port, or any free port if another master uses the default port.
-free_master_port() {
-  if (: </dev/tcp/localhost/11311) 2>/dev/null; then
-    /usr/bin/python3 -c 'import socket; probe = socket.socket(); probe.bind(("", 0)); print(probe.getsockname()[1])'
-  else
-    echo 11311
-  fi
-}
-
 # Prints inode and time of the last change of a file; nothing if the file does not exist.
 identity() {
   stat -c '%i %y' -- "$1" 2>/dev/null || true

@@ -105,38 +105,31 @@ run_tests() {  # BUILD_FOLDER PATTERN
   /usr/bin/python3 "$checkout/ddm_launch/qa/test_report.py" "$1" | grep -A 40 '^FAILED' || true
 }
 
-# Prints the build folder for a sanitizer. Argument: address or thread, as for DDM_SANITIZE.
-sanitized_folder() { if [[ $1 == address ]]; then echo "$DDM_WS/debug"; else echo "$DDM_WS/thread"; fi; }
-
-# Builds with a portable instruction set, so that reports are the same on all machines, and with -O1, because
-# unoptimised Eigen needs minutes for seconds of Release.
-build_sanitized() {  # address|thread TARGET...
-  local folder jobs
-  folder=$(sanitized_folder "$1")
+# Builds in $DDM_WS/debug with AddressSanitizer, or in $DDM_WS/thread with ThreadSanitizer: with a portable instruction
+# set, so that reports are the same on all machines, and with -O1, because unoptimised Eigen needs minutes for seconds of
+# Release.
+build_sanitized() {  # debug|thread TARGET...
+  local folder=$DDM_WS/$1 jobs
   read -ra jobs < <(job_flags)
   make_devel_space "$folder/devel"
   catkin_make -C "$DDM_WS" --build "$folder/build" "${jobs[@]}" \
     -DCATKIN_DEVEL_PREFIX="$folder/devel" -DCMAKE_INSTALL_PREFIX="$folder/install" -DCMAKE_CXX_COMPILER=clang++ \
     -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG='-O1 -gline-tables-only' -DDDM_AVX2=OFF -DDDM_WERROR=ON \
-    -DDDM_SANITIZE="$1" -DDDM_PILCO=OFF "${unity_flags[@]}" "${@:2}"
+    -DDDM_SANITIZE="${1/debug/address}" -DDDM_PILCO=OFF "${unity_flags[@]}" "${@:2}"
 }
 
 # Runs a short experiment with each driver, and several evaluations at a time. A program that does not finish counts as
 # a report.
-short_loop() {  # address|thread REPORTS
-  local folder out port programs
-  folder=$(sanitized_folder "$1") out=$(sanitized_folder "$1")/loop
+short_loop() {  # debug|thread REPORTS
+  local out=$DDM_WS/$1/loop programs=$DDM_WS/$1/devel/lib/ddm_launch
   rm -rf "$out"
   mkdir -p "$out"
-  source_setup "$folder/devel/setup.bash"
-  programs=$folder/devel/lib/ddm_launch
-  port=$(PYTHONPATH=$PYTHONPATH:$checkout/ddm_launch/qa /usr/bin/python3 -c \
-    'from ddm_qa.processes import free_port; print(free_port())')
+  source_setup "$DDM_WS/$1/devel/setup.bash"
   {
     "$programs/run_experiment" --preset debug --trials 1 --out "$out/process" &&
       "$programs/evaluate" --preset debug --model "$out/process/trial_001/model.ddm" --seeds 0:8 --jobs 4 --out "$out/evaluate"
   } </dev/null >"$out/process.log" 2>&1 || cp "$out/process.log" "$2/one_process"
-  timeout -s INT -k 30 300 roslaunch -p "$port" ddm_launch experiment.launch preset:=debug trials:=1 view:=true \
+  timeout -s INT -k 30 300 roslaunch -p "$(free_master_port)" ddm_launch experiment.launch preset:=debug trials:=1 view:=true \
     runs:="$out/nodes" </dev/null >"$out/nodes.log" 2>&1 || true
   [[ -f $out/nodes/summary.yaml ]] || cp "$out/nodes.log" "$2/nodes"
 }
@@ -147,9 +140,8 @@ leaks=detect_leaks=1
 if compgen -G '/usr/lib/*/liblog4cxx.so.1[01]' >/dev/null; then leaks=detect_leaks=0; fi
 
 # Runs the tests and the loop. test_report.py counts each file in build/sanitizer_reports as a failure.
-run_sanitized() {  # address|thread PATTERN
-  local reports
-  reports=$(sanitized_folder "$1")/build/sanitizer_reports
+run_sanitized() {  # debug|thread PATTERN
+  local reports=$DDM_WS/$1/build/sanitizer_reports
   rm -rf "$reports"
   mkdir -p "$reports"
   export ASAN_OPTIONS=log_path=$reports/report:$leaks:detect_stack_use_after_return=1:strict_string_checks=1
@@ -160,7 +152,7 @@ run_sanitized() {  # address|thread PATTERN
   OMP_TOOL_LIBRARIES=$(clang++ -print-resource-dir)/../../libarcher.so
   [[ $1 != thread ]] || export OMP_TOOL_LIBRARIES
   short_loop "$1" "$reports"
-  run_tests "$(sanitized_folder "$1")/build" "$2"
+  run_tests "$DDM_WS/$1/build" "$2"
   if compgen -G "$reports/*" >/dev/null; then tail -n +1 "$reports"/*; else echo "no report"; fi
 }
 
@@ -183,8 +175,7 @@ fuzz_target() {  # FOLDER_OF_SEEDS
 
 # Runs all targets, one per core at a time.
 run_fuzzing() {  # DIR RUNS SEED
-  local out=$1 runs=$2 seed=$3 programs
-  programs=$(sanitized_folder address)/devel/lib
+  local out=$1 runs=$2 seed=$3 programs=$DDM_WS/debug/devel/lib
   export out runs seed programs leaks
   export -f fuzz_target
   mkdir -p "$out"/{logs,corpus,findings}
@@ -194,23 +185,19 @@ run_fuzzing() {  # DIR RUNS SEED
 
 # Fuzzes from the committed seeds, always with the same random numbers. A finding counts as a report of a sanitizer.
 fuzz_shortly() {
-  local out reports
-  out=$(sanitized_folder address)/fuzzing reports=$(sanitized_folder address)/build/sanitizer_reports
+  local out=$DDM_WS/debug/fuzzing reports=$DDM_WS/debug/build/sanitizer_reports
   rm -rf "$out"
   mkdir -p "$out"
   run_fuzzing "$out" 1000 1 2>&1 | tee "$out/output.txt" || cp "$out/output.txt" "$reports/fuzzing"
   cat "$out/fuzzing.csv"
 }
 
-# Starts the Debug build in its own session. Its processes run only while other processes leave a core idle.
+# Starts the Debug build in its own process group. Its processes run only while the tests leave a core idle.
 start_debug_build() {
   mkdir -p "$DDM_WS/debug"
-  export checkout
-  setsid bash -c "$(declare -p unity_flags debug_targets && declare -f)"'
-    renice -n 19 "$$" >/dev/null || true
-    # Linux shares the cores first between sessions, which have their own niceness.
-    { echo 19 >"/proc/$$/autogroup"; } 2>/dev/null || true
-    build_sanitized address "${debug_targets[@]}"' >"$DDM_WS/debug/build.log" 2>&1 </dev/null &
+  set -m
+  (renice -n 19 "$BASHPID" && build_sanitized debug "${debug_targets[@]}") >"$DDM_WS/debug/build.log" 2>&1 </dev/null &
+  set +m
   debug_build=$!
 }
 
@@ -249,7 +236,7 @@ run_mode() {
   phase "Tests on the Release build" run_tests "$DDM_WS/build" "$pattern"
   [[ $mode == part ]] && return
   finish_debug_build
-  phase "gtests and a short loop on the Debug build" run_sanitized address "$debug_tests"
+  phase "gtests and a short loop on the Debug build" run_sanitized debug "$debug_tests"
   phase "Short fuzzing" fuzz_shortly
   results+=("$DDM_WS/debug/build")
 }
@@ -269,7 +256,7 @@ main() {
   phase "Packages" install_packages "${packages_to_run[@]}" "${packages_to_test[@]}"
   install_by_rosdep
   if [[ $mode == fuzz ]]; then
-    phase "Debug build of the fuzz targets into $DDM_WS/debug/devel" build_sanitized address fuzz_targets
+    phase "Debug build of the fuzz targets into $DDM_WS/debug/devel" build_sanitized debug fuzz_targets
     reported=yes
     run_fuzzing "$(realpath -m -- "$2")" "${3:-100000}" 0
     return

@@ -202,6 +202,15 @@ ensure_localhost_resolves() {
   as_root "add a line to /etc/hosts" sh -c 'echo "127.0.0.1 localhost" >>/etc/hosts'
 }
 
+# Prints a port for the ROS master: the default port, or any free port if another master uses the default port.
+free_master_port() {
+  if (: </dev/tcp/localhost/11311) 2>/dev/null; then
+    /usr/bin/python3 -c 'import socket; probe = socket.socket(); probe.bind(("", 0)); print(probe.getsockname()[1])'
+  else
+    echo 11311
+  fi
+}
+
 # Makes the workspace $DDM_WS (default: ~/ddm_ws) with this checkout in its source space.
 make_workspace() {
   DDM_WS=$(realpath -m -- "${DDM_WS:-$HOME/ddm_ws}")
