@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from unittest import mock
 
-from ddm_launch.command import processor
 from ddm_qa import benchmark
 from run_files import read_rows
 
@@ -15,9 +14,3 @@ def test_both_loops_and_all_parts_are_timed(tmp_path):
     assert all(float(rows[name][0]) > 0.0 for name in ("experiment", "lockstep_round_trip", "bare_round_trip"))
     for name in ("objective_gradient", "matrix_products", "retrain", "plan"):
         assert 0.0 < float(rows[name][0]) <= float(rows[name][1]), name
-
-
-def test_processors_of_one_name_are_told_apart(tmp_path):
-    (tmp_path / "cpuinfo").write_text("processor\t: 0\ncpu family\t: 26\nmodel\t\t: 2\nmodel name\t: AMD EPYC\n\nprocessor\t: 1\n")
-    assert processor(tmp_path / "cpuinfo") == "AMD EPYC (family 26, model 2)"
-    assert processor(tmp_path / "no_such_file") != ""

@@ -7,7 +7,7 @@ import numpy as np
 from PIL import Image
 import pytest
 
-from processes import call_main, run_experiment
+from processes import output_of_main, run_experiment
 from rooms import PACKAGE
 from ddm_launch import figure, figure_style, film, learning_curve, success_rate
 from ddm_launch.command import Failure
@@ -43,8 +43,7 @@ def write_sweep(tmp_path):
 def test_each_figure_is_drawn_from_committed_results(main, words, tmp_path, monkeypatch):
     monkeypatch.chdir(RESULTS)
     out = tmp_path / "figure.png"
-    code, output = call_main(main, words.split() + ["--out", str(out)])
-    assert (code, output.strip().split("\n")[-1]) == (0, "wrote %s" % out)
+    output_of_main(main, words.split() + ["--out", out], words=["wrote %s" % out])
     with Image.open(str(out)) as image:
         assert len(set(image.convert("L").tobytes())) > 10  # not blank
 
@@ -56,16 +55,13 @@ def test_each_figure_is_drawn_from_committed_results(main, words, tmp_path, monk
     (["film_strip", "."], ["trials.csv cannot be read"])])
 def test_what_cannot_be_drawn_is_refused_and_nothing_is_written(words, parts, sweep, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    code, output = call_main(figure.main, [word.replace("SWEEP", sweep) for word in words] + ["--out", "figure.png"])
-    assert code == 1
-    assert all(part in output for part in parts), output
+    output_of_main(figure.main, [word.replace("SWEEP", sweep) for word in words] + ["--out", "figure.png"], code=1, words=parts)
     assert not (tmp_path / "figure.png").exists()
 
 
 @pytest.mark.parametrize("word", ["sweep.csv", "=sweep.csv", "mine="])
 def test_a_curve_without_label_or_file_is_refused(word):
-    code, output = call_main(figure.main, ["success_rate", word])
-    assert code == 2 and "must be LABEL=FILE.csv, got '%s'" % word in output
+    output_of_main(figure.main, ["success_rate", word], code=2, words=["must be LABEL=PATH, got '%s'" % word])
 
 
 def test_a_curve_is_the_rate_over_all_seeds_of_a_file(sweep):
@@ -95,30 +91,27 @@ def test_tables_that_say_nothing_of_success_are_refused(rows, part, tmp_path):
 def test_errors_are_in_the_unit_of_the_run_and_a_run_must_tell_its_goal(tmp_path):
     (tmp_path / "trials.csv").write_text(HEADER + "0,0,100,1,-0.04\n")
     config = tmp_path / "config.yaml"
-    with figure_style.new_screen_figure(7.0, 4.2) as drawn:
+    with figure_style.new_figure(7.0, 4.2) as drawn:
         axes = drawn.subplots()
         learning_curve.draw_one(axes, read_trials(str(tmp_path / "trials.csv")), "m", 0.05)
         assert "[m]" in axes.get_ylabel()
         assert axes.lines[0].get_ydata().tolist() == [0.04]
     for text in ("goal: [\n", "plant: {dt: 0.1}\n", "goal: {tolerance: 0.05}\n", "7\n"):
         config.write_text(text)
-        code, output = call_main(figure.main, ["learning_curve", str(tmp_path), "--out", str(tmp_path / "figure.png")])
-        assert code == 1 and "config.yaml" in output
+        output_of_main(figure.main, ["learning_curve", tmp_path, "--out", tmp_path / "figure.png"], code=1, words=["config.yaml"])
 
 
 @pytest.fixture(name="run", scope="module")
 def make_run(tmp_path_factory):
     folder = str(tmp_path_factory.mktemp("film") / "run")
-    code, output = run_experiment("--preset", "debug", "--seed", 1, "--trials", 1, "--out", folder)
-    assert code == 0, output
+    run_experiment("--preset", "debug", "--seed", 1, "--trials", 1, "--out", folder)
     return folder
 
 
 def test_a_film_shows_evaluations_one_after_the_other_in_real_time(run, tmp_path):
     out = str(tmp_path / "film.webp")
     evaluations = [os.path.join(run, "evaluation_%03d" % trial) for trial in (0, 1)]
-    code, output = call_main(figure.main, ["film", *evaluations, "--seconds", "2", "--out", out])
-    assert code == 0, output
+    output_of_main(figure.main, ["film", *evaluations, "--seconds", 2, "--out", out])
     durations = []
     with Image.open(out) as image:
         for frame in range(image.n_frames):
@@ -152,13 +145,11 @@ def test_a_film_of_other_folders_is_refused_and_no_file_is_written(run, tmp_path
     broken, lost = str(tmp_path / "broken"), str(tmp_path / "lost")
     shutil.copytree(run, broken)
     os.remove(os.path.join(broken, "trial_001", "model.ddm"))
-    code, output = run_experiment("--preset", "debug", "--seed", 1, "--trials", 0, "--nuisance", "drops", "--out", lost)
-    assert code == 0, output
+    run_experiment("--preset", "debug", "--seed", 1, "--trials", 0, "--nuisance", "drops", "--out", lost)
     for words, part in (([run], "evaluation_NNN"), ([broken + "/evaluation_001"], "trial_001/model.ddm"),
                         ([lost + "/evaluation_000"], "lost frames"),
                         ([run + "/evaluation_000", "--out", str(tmp_path / "film.png")], ".webp")):
-        code, output = call_main(figure.main, ["film", "--out", str(tmp_path / "film.webp"), *words])
-        assert code == 1 and part in output, output
+        output_of_main(figure.main, ["film", "--out", tmp_path / "film.webp", *words], code=1, words=[part])
     assert not os.path.exists(str(tmp_path / "film.webp"))
 
 

@@ -7,7 +7,7 @@ import re
 import pytest
 
 from namespaces import hiding, why_not
-from processes import call, free_port, has_mujoco
+from processes import free_port, has_mujoco, output_of
 from rooms import CHECKOUT
 from run_files import differences, expected_files, files_in, torque_files
 
@@ -40,8 +40,7 @@ def programs_in(folder):
 @pytest.fixture(name="prefix", scope="module")
 def install(tmp_path_factory):
     scratch = str(tmp_path_factory.mktemp("installed"))
-    code, output = call(["cmake", "--install", BUILD], environment=dict(os.environ, DESTDIR=scratch))
-    assert code == 0, output
+    output_of(["cmake", "--install", BUILD], environment=dict(os.environ, DESTDIR=scratch))
     return os.path.join(scratch, cached("CMAKE_INSTALL_PREFIX").lstrip("/"))
 
 
@@ -51,9 +50,8 @@ def run_installed(prefix, folder, *command):
                 "PYTHONUNBUFFERED": "1"}
     # A function without arguments sources setup.bash, which would otherwise parse the words of the command.
     source = "open_terminal() { . %s/setup.bash; }; open_terminal && exec \"$@\"" % prefix
-    code, output = call(hiding(GONE) + ["bash", "-c", source, "bash"] + [str(word) for word in command],
-                        environment=terminal, folder=folder)
-    assert code == 0, "%s\n%s" % (command, output)
+    output = output_of(hiding(GONE) + ["bash", "-c", source, "bash"] + [str(word) for word in command],
+                       environment=terminal, folder=folder)
     return output
 
 

@@ -5,7 +5,7 @@ import subprocess
 
 import yaml
 
-from processes import call, find_program, roslaunch
+from processes import find_program, output_of, roslaunch
 from run_files import expected_files, files_in, read_yaml
 
 ODD = "it's a \"run\" #1: {x}, \\y & 100%"
@@ -42,12 +42,11 @@ def test_launch_files_get_all_their_paths(tmp_path):
 
 def test_an_experiment_runs_and_its_model_is_evaluated_in_a_folder_with_such_a_name(tmp_path):
     odd, home, out = str(tmp_path / ODD), {"HOME": str(tmp_path)}, str(tmp_path / "20:40")
-    _, output = roslaunch(str(tmp_path / "ros"), "experiment.launch", "preset:=debug", "trials:=0", "runs:=~/%s" % ODD,
-                          folder=str(tmp_path), variables=home)
+    output = roslaunch(str(tmp_path / "ros"), "experiment.launch", "preset:=debug", "trials:=0", "runs:=~/%s" % ODD,
+                       folder=str(tmp_path), variables=home)
     assert files_in(odd) == expected_files(0), output
-    code, output = call([find_program("evaluate"), "--preset", "debug", "--model", "~/%s/trial_000/model.ddm" % ODD, "--seeds",
-                         "20:21", "--out=" + out], environment=dict(os.environ, **home))
-    assert code == 0, output
+    output_of([find_program("evaluate"), "--preset", "debug", "--model", "~/%s/trial_000/model.ddm" % ODD, "--seeds",
+               "20:21", "--out=" + out], environment=dict(os.environ, **home))
     summary = read_yaml(out, "evaluation.yaml")
     assert (summary["seeds"], summary["model"]) == ("20:21", odd + "/trial_000/model.ddm")
     assert isinstance(summary["id"], str) and isinstance(summary["success_rate"], float)

@@ -1,4 +1,4 @@
-# Rules for all source files, and linters without findings: clang-format, catkin_lint, shellcheck, pyflakes, clang-tidy.
+# Rules for all source files and manifests, and linters without findings: clang-format, catkin_lint, shellcheck, pyflakes, clang-tidy.
 # SPDX-License-Identifier: BSD-3-Clause
 from concurrent.futures import ThreadPoolExecutor
 import glob
@@ -6,10 +6,12 @@ import os
 import re
 import shutil
 import subprocess
+import xml.etree.ElementTree
 
 import pytest
+import yaml
 
-from rooms import CHECKOUT
+from rooms import CHECKOUT, PACKAGE
 
 FILES = [path for path in glob.glob(os.path.join(CHECKOUT, "**"), recursive=True)
          if os.path.isfile(path) and "__pycache__" not in path] + [os.path.join(CHECKOUT, ".ci", "run")]
@@ -90,3 +92,18 @@ def test_programs_execute_nothing_that_a_file_or_message_says():
 def test_no_file_names_a_folder_of_a_machine():
     for path in [path for path in FILES if path.endswith((".h", ".cpp", ".sh", ".py", ".md", ".yaml", ".csv"))]:
         assert not re.search(r"(?<![\w.~}$])/(root/dev|work)/\w", read(path)), path
+
+
+def tags(end):
+    """Texts of all tags in the manifests of packages whose names end with `end`."""
+    return {element.text.strip() for path in FILES if path.endswith("/package.xml")
+            for element in xml.etree.ElementTree.parse(path).getroot() if element.tag.endswith(end)}
+
+
+def test_rosdep_finds_every_dependency_on_debian_with_noetic_and_with_ros_o():
+    known = yaml.safe_load(read(os.path.join(PACKAGE, "test", "rosdep_keys.yaml")))
+    keys, used = set(known["system"]).union(*known["ros"].values()), tags("depend") - tags("name")
+    assert len(used) > 40
+    assert used == keys, "rosdep has no such key, rosdep_keys.yaml lacks it, or no package.xml names it any more"
+    # Some systems do not have these packages, so they must not be dependencies.
+    assert not [key for key in used if "mujoco" in key or "egl" in key]

@@ -7,7 +7,7 @@ import subprocess
 import pytest
 import yaml
 
-from processes import call, find_program, has_mujoco
+from processes import find_program, has_mujoco, output_of
 from run_files import read_rows, read_yaml
 
 pytestmark = pytest.mark.skipif(not has_mujoco(), reason="ddm_sim was built without MuJoCo")
@@ -48,14 +48,13 @@ class Maker:
         self.folder, self.elsewhere, self.plant = folder, folder / "elsewhere", folder / "my_plant.yaml"
         self.elsewhere.mkdir()
 
-    def call(self, *arguments):
-        return call([find_program("new_plant", "ddm_sim"), *arguments], folder=str(self.folder))
+    def call(self, *arguments, **expected):
+        return output_of([find_program("new_plant", "ddm_sim"), *arguments], folder=str(self.folder), **expected)
 
     def make(self, model, text, *options):
         """Returns (block `plant` of the plant file, output)."""
         (self.folder / model).write_text(text)
-        code, output = self.call(model, "--out", "my_plant.yaml", *options)
-        assert code == 0, output
+        output = self.call(model, "--out", "my_plant.yaml", *options)
         return read_yaml(self.plant)["plant"], output
 
     def simulate(self, header, row):
@@ -67,8 +66,7 @@ class Maker:
         return [line.split(",") for line in text.splitlines()]
 
     def assert_refused(self, code, words, *arguments):
-        actual, output = self.call(*arguments)
-        assert actual == code and all(word in output for word in words), output
+        self.call(*arguments, code=code, words=words)
         assert not self.plant.exists() and not [name for name in os.listdir(self.folder) if "unfinished" in name]
 
 
@@ -92,8 +90,7 @@ def test_a_urdf_with_one_motor_becomes_a_plant_that_learns_from_any_folder(maker
                     ["run_experiment", "--config", "run/config.yaml", "--out", "again"],
                     ["evaluate", "--model", "run/trial_000/model.ddm", "--seeds", "0:1", *debug],
                     ["sweep", "--seeds", "0:1", "--trials", 0, "--out", "sweep", *debug]):
-        code, output = call([find_program(command[0]), *command[1:]], folder=folder)
-        assert code == 0, output
+        output_of([find_program(command[0]), *command[1:]], folder=folder)
     saved = read_yaml(folder, "run", "config.yaml")
     model = str(maker.folder / "swing.urdf")
     assert (saved["plant"]["model"], saved["experiment"]["plant"]) == (model, str(maker.plant))

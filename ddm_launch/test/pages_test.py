@@ -8,7 +8,7 @@ import roslib.packages
 import pages
 import rooms  # noqa: F401
 from ddm_study.pages import BLOCK, Functions, filled
-from processes import call, free_port, has_mujoco, line_by_line
+from processes import free_port, has_mujoco, line_by_line, output_of
 
 LIMIT_S = 300.0  # time limit for the commands of a page
 
@@ -65,6 +65,5 @@ def test_the_commands_of_the_first_pages_run_as_they_are(tmp_path):
         commands = commands.replace(" rviz:=true", "")  # the page describes this for machines without a screen
         environment = dict(line_by_line(), HOME=str(tmp_path), ROS_HOME=str(tmp_path / "ros"),
                            ROS_MASTER_URI="http://localhost:%d" % free_port())
-        code, output = call(["bash", "-c", "set -e\n" + commands], LIMIT_S, environment=environment, folder=str(tmp_path))
-        assert code == 0, "%s\n%s" % (page, output)
+        output_of(["bash", "-c", "set -e\n" + commands], LIMIT_S, environment=environment, folder=str(tmp_path))
     assert (tmp_path / "film.webp").exists()

@@ -16,6 +16,13 @@ def call(command, limit_s=LIMIT_S, **kwargs):
     return process.waitForEnd(limit_s), process.output
 
 
+def output_of(command, limit_s=LIMIT_S, code=0, words=(), **kwargs):
+    """Runs a program, which must end with this exit code and print these words. Returns its output."""
+    found, output = call(command, limit_s, **kwargs)
+    assert found == code and all(word in output for word in words), "%s\n%s" % (command, output)
+    return output
+
+
 def has_mujoco():
     """Whether ddm_sim was built with MuJoCo, which is not available on all systems."""
     code, output = call([find_program("simulate", "ddm_sim"), "--plant", "mujoco_pendulum", "--describe"])
@@ -23,21 +30,24 @@ def has_mujoco():
     return code == 0
 
 
-def call_main(main, *arguments):
-    """Calls the main function of a program in this process. Returns (exit code, output)."""
-    with io.StringIO() as output, contextlib.redirect_stdout(output), contextlib.redirect_stderr(output):
+def output_of_main(main, arguments, code=0, words=()):
+    """Calls the main function of a program in this process, with the same checks as output_of()."""
+    with io.StringIO() as stream, contextlib.redirect_stdout(stream), contextlib.redirect_stderr(stream):
         try:
-            code = main(*arguments)
+            found = main([str(word) for word in arguments])
         except SystemExit as stop:
-            code = stop.code
-        return code, output.getvalue()
+            found = stop.code
+        output = stream.getvalue()
+    assert (found or 0) == code and all(word in output for word in words), output
+    return output
 
 
-def run_experiment(*arguments, limit_s=LIMIT_S, **kwargs):
-    return call([find_program("run_experiment")] + list(arguments), limit_s, **kwargs)
+def run_experiment(*arguments, **kwargs):
+    return output_of([find_program("run_experiment"), *arguments], **kwargs)
 
 
 def roslaunch(log_folder, *arguments, limit_s=LIMIT_S, **kwargs):
-    """Runs a launch file of ddm_launch to its end. Returns (exit code, output)."""
+    """Runs a launch file of ddm_launch to its end. Returns the output."""
     launch = start_roslaunch(log_folder, *arguments, **kwargs)
-    return launch.waitForEnd(limit_s), launch.output
+    launch.waitForEnd(limit_s)
+    return launch.output

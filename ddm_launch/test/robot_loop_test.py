@@ -35,7 +35,7 @@ def test_an_experiment_on_a_robot_is_stopped_and_resumed_with_another_crop(maste
         launch.waitForEnd(LIMIT_S)
     assert "cancelled" in launch.output and "resumes" in launch.output
     assert "summary.yaml" not in files_in(out)
-    _, output = roslaunch(str(tmp_path), *arguments, limit_s=LIMIT_S)
+    output = roslaunch(str(tmp_path), *arguments, limit_s=LIMIT_S)
     assert files_in(out) == sorted(
         [".trials.crc32", "config.yaml", "robot_check.yaml", "summary.yaml", "trials.csv", "evaluation_000/goal_distance.csv",
          "evaluation_000/torques.csv", "evaluation_000/trial.bag", "trial_000/model.ddm", "trial_000/torques.csv",
@@ -60,7 +60,7 @@ def test_an_experiment_on_a_robot_is_stopped_and_resumed_with_another_crop(maste
     assert check["latency_ms"]["median"] < 1e3 * DT and check["deadline_misses"] < STEPS
 
     rows = read_bytes(out, "trials.csv")
-    _, output = roslaunch(str(tmp_path), *arguments, "crop:=10,10,180,180", limit_s=LIMIT_S)
+    output = roslaunch(str(tmp_path), *arguments, "crop:=10,10,180,180", limit_s=LIMIT_S)
     assert "robot/crop: [5, 5, 190, 190] there, [10, 10, 180, 180] here" in output and "first trial" in output
     assert read_bytes(out, "trials.csv") == rows
 
@@ -89,6 +89,6 @@ def test_a_rehearsal_runs_to_its_end_with_a_listener_in_the_place_of_the_motor(m
     shown.shutdown()
     assert "summary.yaml" in files_in(out), launch.output
     trial = os.path.join(out, "trial_000")
-    _, output = roslaunch(str(tmp_path), "replay.launch", "bag:=" + os.path.join(trial, "trial.bag"), "rate:=0", "preset:=debug",
-                          "model:=" + os.path.join(trial, "model.ddm"), "config:=%s" % config, limit_s=LIMIT_S)
+    output = roslaunch(str(tmp_path), "replay.launch", "bag:=" + os.path.join(trial, "trial.bag"), "rate:=0", "preset:=debug",
+                       "model:=" + os.path.join(trial, "model.ddm"), "config:=%s" % config, limit_s=LIMIT_S)
     assert "frames replayed" in output

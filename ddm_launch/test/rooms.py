@@ -6,7 +6,5 @@ import sys
 PACKAGE = os.path.realpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 CHECKOUT = os.path.dirname(PACKAGE)
 PRESETS = os.path.join(PACKAGE, "config", "presets")
-ROOMS = {"ddm_launch": os.path.join(PACKAGE, "src"), "ddm_study": os.path.join(PACKAGE, "study"),
-         "ddm_qa": os.path.join(PACKAGE, "qa")}
 
-sys.path += [ROOMS["ddm_study"], ROOMS["ddm_qa"]]
+sys.path += [os.path.join(PACKAGE, "study"), os.path.join(PACKAGE, "qa")]

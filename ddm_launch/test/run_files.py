@@ -5,8 +5,8 @@ import os
 import rosbag
 
 import rooms  # noqa: F401
-from ddm_qa.run_comparison import (COLUMNS, TIME_COLUMNS, comparable, differences, expected_files,  # noqa: F401
-                                       files_in, read_bytes, read_rows, read_yaml)
+from ddm_launch.run_folder import read_yaml  # noqa: F401
+from ddm_qa.run_comparison import COLUMNS, differences, expected_files, files_in, read_bytes, read_rows  # noqa: F401
 
 
 def fingerprint(folder):

@@ -68,7 +68,7 @@ def test_ctrl_c_cancels_the_job_and_what_sbatch_refuses_is_told_with_its_words(c
     out = str(tmp_path / "out")
     with Sweep(*debug(out, "0:2", 999), "--slurm", environment=cluster.environment) as process:
         wait_for(lambda: programs_of(seed_folder(out, 0)), "the program of seed 0")
-        process.send(signal.SIGINT)
+        process.send_signal(signal.SIGINT)
         assert process.waitForEnd(30.0) == 130, process.output
     assert "slurm_job" not in files_in(out)
     wait_for(lambda: not cluster.tasks(), "the end of all tasks")
@@ -140,13 +140,13 @@ def test_a_job_outlives_its_sweep_and_its_cluster_is_asked_and_told_to_cancel_it
     site.answer("squeue", "[[ $SLURM_CLUSTERS == west && -z ${SQUEUE_STATES:-} ]] && %s" % QUEUED)
     for number in (signal.SIGHUP, signal.SIGTERM, signal.SIGKILL):
         process = site.start_and_watch()
-        process.send(number)
+        process.send_signal(number)
         assert_end(process, *([-number] if number == signal.SIGKILL else [
             128 + number, "the Slurm job ddm_sweep_", "may be running", "same command waits for it", "'scancel --name ddm_sweep_"]))
     # by GNU parallel
     assert_end(site.start(engine=()), 1, "may be running", site.out + "/slurm_job")
     process = site.start_and_watch()
-    process.send(signal.SIGINT)
+    process.send_signal(signal.SIGINT)
     assert_end(process, 130)
     cancelled, = site.calls("scancel")
     assert cancelled in site.calls("squeue")[-1] and len(site.calls("sbatch")) == 1

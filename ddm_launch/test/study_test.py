@@ -7,7 +7,7 @@ import re
 import numpy as np
 import pytest
 
-from processes import call, call_main, find_program, has_mujoco, run_experiment
+from processes import call, find_program, has_mujoco, output_of, output_of_main, run_experiment
 from rooms import PACKAGE
 from ddm_launch.command import Failure
 from ddm_launch.plant import Joints
@@ -83,8 +83,7 @@ def test_rows_of_seeds_made_again_are_equal_but_for_times_and_versions(again, co
     write(tmp_path / "new/times.csv", "seed,train_s\n300,2\n")  # computing times are not compared
     if again:
         write(tmp_path / "new/trials.csv", header + again)
-    found, output = call_main(main, ["compare", str(tmp_path / "old"), str(tmp_path / "new")])
-    assert found == code and part in output and "times" not in output
+    assert "times" not in output_of_main(main, ["compare", tmp_path / "old", tmp_path / "new"], code, [part])
 
 
 def write_pilco_run(folder, trials=2):
@@ -101,24 +100,22 @@ def test_runs_of_pilco_are_collected(tmp_path):
             ("policies", [["7", "0", "125"] + 9 * ["0"], ["7", "1", "250"] + 9 * ["1"]]),
             ("angles", [["7", "125", "1", "0", "0.000", "2.0000"], ["7", "250", "1", "0", "0.000", "2.0000"]])):
         out = str(tmp_path / (kind + ".csv"))
-        assert call_main(main, ["collect", kind, str(tmp_path), "--out", out]) == (0, "")
+        assert output_of_main(main, ["collect", kind, tmp_path, "--out", out]) == ""
         assert read_rows(out)[1:] == expected
 
 
 def test_folders_that_are_no_sweep_or_not_of_pilco_are_named(tmp_path):
-    code, output = call_main(main, ["collect", "angles", str(tmp_path), "--out", str(tmp_path / "a.csv")])
-    assert code == 1 and "%s must hold folders seed_NNNN" % tmp_path in output
+    words = [tmp_path, "--out", tmp_path / "a.csv"]
+    output_of_main(main, ["collect", "angles", *words], 1, ["%s must hold folders seed_NNNN" % tmp_path])
     write_pilco_run(tmp_path / "seed_0007")
     (tmp_path / "seed_0007/trial_001/pilco.yaml").unlink()
-    code, output = call_main(main, ["collect", "policies", str(tmp_path), "--out", str(tmp_path / "a.csv")])
-    assert code == 1 and "trial_001/pilco.yaml must have the keys gp_s" in output
+    output_of_main(main, ["collect", "policies", *words], 1, ["trial_001/pilco.yaml must have the keys gp_s"])
 
 
 def test_a_run_has_rows_for_features_predictions_and_goal_and_damage_is_named(tmp_path):
     run, table = tmp_path / "run", str(tmp_path / "diagnosis.csv")
-    code, output = run_experiment("--preset", "debug", "--plant", "two_link", "--seed", 3, "--trials", 1, "--out", str(run))
-    assert code == 0, output
-    assert call_main(main, ["diagnose", str(run), "--out", table])[0] == 0
+    run_experiment("--preset", "debug", "--plant", "two_link", "--seed", 3, "--trials", 1, "--out", str(run))
+    output_of_main(main, ["diagnose", run, "--out", table])
     rows = [dict(zip(diagnosis.COLUMNS, row)) for row in read_rows(table)[1:]]
     assert [(row["part"], row["steps"], row["joint"]) for row in rows] == [
         ("features", "0", "shoulder"), ("features", "0", "elbow"),
@@ -127,8 +124,7 @@ def test_a_run_has_rows_for_features_predictions_and_goal_and_damage_is_named(tm
     assert float(rows[0]["median"]) < 45.0  # features without information would have a median of 90
     bag = run / "trial_001" / "trial.bag"
     os.truncate(str(bag), os.path.getsize(str(bag)) // 2)
-    code, output = call([STUDY, "diagnose", str(run), "--out", table])
-    assert code == 1 and str(bag) in output
+    assert str(bag) in output_of([STUDY, "diagnose", str(run), "--out", table], code=1)
 
 
 def test_angles_are_compared_around_the_circle_and_the_goal_counts_where_all_joints_are_near_it():
@@ -145,8 +141,7 @@ def test_angles_are_compared_around_the_circle_and_the_goal_counts_where_all_joi
 def dry_run(tmp_path_factory):
     """All commands of all rules."""
     out = str(tmp_path_factory.mktemp("plan"))
-    code, output = call([STUDY, "reproduce", "-n", "--out", out, "paper", "efficient"])
-    assert code == 0, output
+    output = output_of([STUDY, "reproduce", "-n", "--out", out, "paper", "efficient"])
     return output
 
 
@@ -175,10 +170,9 @@ def test_programs_accept_the_options_of_every_sweep(plan):
 def test_results_are_made_and_the_same_command_resumes(tmp_path):
     words = [STUDY, "reproduce", "--out", str(tmp_path), "--jobs", "2", "efficient/success_rate.png",
              "efficient/config.yaml", "SEEDS=2", "EFFICIENT=debug"]
-    code, output = call(words, 200.0)
-    assert code == 0, output
+    output_of(words, 200.0)
     assert len(read_rows(str(tmp_path), "efficient", "trials.csv")) == 1 + 2 * 16
     assert str(tmp_path) not in (tmp_path / "efficient/config.yaml").read_text()
     (tmp_path / "efficient/success_rate.png").unlink()
-    code, output = call(words, 60.0)
-    assert code == 0 and "sweep" not in output and "figure success_rate" in output
+    output = output_of(words, 60.0)
+    assert "sweep" not in output and "figure success_rate" in output

@@ -9,7 +9,7 @@ import subprocess
 
 import pytest
 
-from processes import call_main, find_program, run_experiment
+from processes import find_program, output_of_main, run_experiment
 from run_files import differences, expected_files, files_in, read_bytes, read_rows, read_yaml
 from sweeps import (Sweep, assert_ends, assert_nothing_runs, assert_table, debug, is_finished, programs_of, seed_folder, snapshot,
                     wait_for)
@@ -41,8 +41,7 @@ def copy_reference(reference, out):
 
 def assert_same_as_run_experiment(out, seed, trials, tmp_path):
     single = str(tmp_path / "single")
-    code, output = run_experiment("--preset", "debug", "--seed", seed, "--trials", trials, "--out", single)
-    assert code == 0, output
+    run_experiment("--preset", "debug", "--seed", seed, "--trials", trials, "--out", single)
     assert differences(single, seed_folder(out, seed), expected_files(trials)) == []
 
 
@@ -106,7 +105,7 @@ def test_a_signal_ends_all_seeds_and_a_second_sweep_in_the_folder_is_refused(num
     with Sweep(*debug(out, "0:2", 999), "--jobs", 1) as process:
         wait_for(lambda: programs_of(seed_folder(out, 0)), "the program of seed 0")
         assert_ends(1, ["is running", out], *debug(out, "1:2"))
-        process.send(number)
+        process.send_signal(number)
         assert process.waitForEnd(20.0) == code, process.output
     assert "SIG" in process.output and "seed 1: " in process.output
 
@@ -136,8 +135,7 @@ def test_seeds_of_another_experiment_are_named_and_not_mixed_in(out, tmp_path):
     assert_ends(0, ["1 of 1 seeds finished"], *debug(out, "0:1", 0), *words)
     config.write_text("mpc: {epsilon: 0.3}\n")
     assert_ends(1, ["1 of 2 seeds finished", "seed_0001", "mpc/epsilon: 0.4 there, 0.3 here"], *debug(out, "0:2", 0), *words)
-    code, output = run_experiment("--preset", "debug", "--seed", 2, "--trials", 0, "--out", seed_folder(out, 2))
-    assert code == 0, output
+    run_experiment("--preset", "debug", "--seed", 2, "--trials", 0, "--out", seed_folder(out, 2))
     assert_ends(1, ["seed 2: ", "seed_0002 is not the experiment of seed 0"], *debug(out, "0:3", 0), *words)
     assert_table(out, [0], 0)
 
@@ -176,8 +174,7 @@ def test_a_table_that_makes_no_sense_is_named(copy):
     (["option of run_experiment"], debug("x") + ["--program", "prediction_experiment"])])
 def test_bad_options_are_refused_by_name_before_anything_is_made(words, arguments, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    code, output = call_main(main, [str(word) for word in arguments])
-    assert code == 2 and all(word in output for word in words), output
+    output_of_main(main, arguments, 2, words)
     assert os.listdir(str(tmp_path)) == []
 
 

@@ -17,7 +17,7 @@ class Sweep(Process):
 
     def kill_group(self):
         """Kills the sweep and its process group without a chance to clean up."""
-        os.killpg(self._process.pid, signal.SIGKILL)
+        os.killpg(self.pid, signal.SIGKILL)
         self.waitForEnd(10.0)
 
 

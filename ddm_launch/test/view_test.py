@@ -23,11 +23,10 @@ def test_all_of_a_watched_experiment_is_on_topics_and_watching_changes_nothing(m
     for topic, message in TOPICS.items():
         rospy.Subscriber(topic, message, heard[topic].append)
     start = time.monotonic()
-    _, output = roslaunch(str(tmp_path), "experiment.launch", "preset:=debug", "seed:=1", "trials:=1", "view:=true",
-                          "frame_rate:=%g" % RATE, "runs:=%s" % (tmp_path / "watched"), port=0, limit_s=110.0)
+    output = roslaunch(str(tmp_path), "experiment.launch", "preset:=debug", "seed:=1", "trials:=1", "view:=true",
+                       "frame_rate:=%g" % RATE, "runs:=%s" % (tmp_path / "watched"), port=0, limit_s=110.0)
     assert time.monotonic() - start > FRAMES / RATE
-    code, alone = run_experiment("--preset", "debug", "--seed", 1, "--trials", 1, "--out", tmp_path / "alone")
-    assert code == 0, alone
+    run_experiment("--preset", "debug", "--seed", 1, "--trials", 1, "--out", tmp_path / "alone")
     names = [name for name in expected_files(1) if not name.endswith((".bag", "config.yaml"))]
     assert differences(tmp_path / "alone", tmp_path / "watched", names) == [], output
 

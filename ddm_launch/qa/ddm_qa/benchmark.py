@@ -3,14 +3,15 @@
 import glob
 import json
 import os
+import re
 import tempfile
 
 import numpy as np
 from tqdm import tqdm
 import yaml
 
-from ddm_launch.command import Failure, find_program, processor, program_parser, run_program
-from ddm_launch.run_folder import read_table, read_yaml, write_csv
+from ddm_launch.command import Failure, find_program, program_parser, run_program
+from ddm_launch.run_folder import read_table, read_yaml, write_table
 from ddm_model.plain_file import write_file
 from ddm_qa.processes import Process, free_port, on_this_machine, start_roslaunch
 
@@ -47,13 +48,11 @@ def call(program, *arguments, package="ddm_launch", **variables):
 
 
 def experiment(run, preset):
-    """Runs an experiment in the folder `run` and yields its row."""
     call("run_experiment", "--preset", preset, "--plant", "pendulum", "--seed", 0, "--trials", TRIALS, "--out", run)
-    yield "experiment", 1e6 * read_yaml(os.path.join(run, "summary.yaml"))["wall_s"], ""
+    yield "experiment", 1e6 * read_yaml(run, "summary.yaml")["wall_s"], None
 
 
 def objective(run, scratch):
-    """Yields the rows of the objective of an experiment."""
     report = os.path.join(scratch, "kernels.json")
     call("benchmark_kernels", run, "--benchmark_out_format=json", "--benchmark_out=" + report)
     with open(report) as stream:
@@ -66,7 +65,6 @@ def objective(run, scratch):
 
 
 def training_and_plan(run, scratch):
-    """Yields the rows of trainings on all bags of an experiment and of plans with its last model."""
     bags = sorted(glob.glob(os.path.join(run, "trial_*", "trial.bag")))
     config, times = ["--config", os.path.join(run, "config.yaml")], []
     for _ in range(RETRAININGS):
@@ -83,29 +81,24 @@ def training_and_plan(run, scratch):
 
 def round_trips(scratch):
     """Measures both loops RESTARTS times, alternately, and yields their rows."""
-    times = [(lockstep_us(free_port(), scratch), bare_us(free_port(), scratch)) for _ in range(RESTARTS)]
-    for name, means in zip(("lockstep_round_trip", "bare_round_trip"), zip(*times)):
-        yield name, np.median(means), ""
+    means = {"lockstep": [], "bare_camera": []}
+    for _ in range(RESTARTS):
+        port = free_port()
+        master = {"ROS_MASTER_URI": "http://localhost:%d" % port, "ROS_HOME": scratch}
+        environment = on_this_machine(**master, **ONE_THREAD)
 
+        def measure(role):  # while all other nodes of the loop are running
+            means[role].append(float(call("benchmark_kernels", role, NUM_FRAMES, **master).split()[-1]))
 
-def timed_us(role, master):
-    """Mean time of the round trips of a loop whose other nodes are running [us]. master: environment variables."""
-    return float(call("benchmark_kernels", role, NUM_FRAMES, **master).split()[-1])
-
-
-def lockstep_us(port, scratch):
-    with start_roslaunch(scratch, "nodes.launch", "preset:=paper", "plant:=pendulum", "recorder:=false", "trainer:=false",
-                         port=port, variables=ONE_THREAD) as nodes:
-        nodes.waitForText("process[mpc_node", 60.0)  # the node is started after all parameters are set
-        return timed_us("lockstep", {"ROS_MASTER_URI": "http://localhost:%d" % port, "ROS_HOME": scratch})
-
-
-def bare_us(port, scratch):
-    master = {"ROS_MASTER_URI": "http://localhost:%d" % port, "ROS_HOME": scratch}
-    environment = on_this_machine(**master, **ONE_THREAD)
-    with Process(["roscore", "-p", port], environment), \
-            Process([find_program("benchmark_kernels"), "bare_controller"], environment):
-        return timed_us("bare_camera", master)
+        with start_roslaunch(scratch, "nodes.launch", "preset:=paper", "plant:=pendulum", "recorder:=false", "trainer:=false",
+                             port=port, variables=ONE_THREAD) as nodes:
+            nodes.waitForText("process[mpc_node", 60.0)  # the node is started after all parameters are set
+            measure("lockstep")
+        with Process(["roscore", "-p", port], environment), \
+                Process([find_program("benchmark_kernels"), "bare_controller"], environment):
+            measure("bare_camera")
+    for name, role in (("lockstep_round_trip", "lockstep"), ("bare_round_trip", "bare_camera")):
+        yield name, np.median(means[role]), None
 
 
 def work(out, preset):
@@ -115,10 +108,12 @@ def work(out, preset):
         run = os.path.join(scratch, "run")
         steps = (experiment(run, preset), objective(run, scratch), training_and_plan(run, scratch), round_trips(scratch))
         for step in tqdm(steps, unit="step", dynamic_ncols=True, disable=None):
-            rows += [(name, float(median), p99 and float(p99)) for name, median, p99 in step]
-            write_csv(os.path.join(out, "speed.csv"), ["name", "median_us", "p99_us"], rows)
-        version = read_yaml(os.path.join(run, "config.yaml")).get("version", "?")
-    machine = {"cpu": processor(), "cores": len(os.sched_getaffinity(0)), "version": version}
+            rows += step
+            write_table(os.path.join(out, "speed.csv"), rows, ["name", "median_us", "p99_us"])
+        version = read_yaml(run, "config.yaml")["version"]
+    with open("/proc/cpuinfo") as stream:  # family and model distinguish generations of processors with the same name
+        machine = dict(re.findall(r"^(model name|cpu family|model)\s*: (.*)$", stream.read(), re.MULTILINE))
+    machine.update(cores=len(os.sched_getaffinity(0)), version=version)
     write_file(os.path.join(out, "machine.yaml"), yaml.safe_dump(machine, sort_keys=False))
     print("results: %s" % out)
 

@@ -6,6 +6,7 @@ import json
 import os
 import re
 import shutil
+import struct
 import subprocess
 import traceback
 
@@ -15,9 +16,9 @@ from ddm_launch.command import Failure
 from ddm_launch.run_folder import is_finished
 from ddm_model.plain_file import write_file
 from ddm_qa.fault_cases import AT_REST, FAULTS_OF_ROOT, ON_A_ROBOT, REAL_TIME
-from ddm_qa.fault_damage import damage, write
 from ddm_qa.processes import start_roslaunch
-from ddm_qa.run_comparison import Finished, differences, digest, digests, expected_files, read_bytes, read_rows
+from ddm_qa.run_comparison import (differences, digest, digests, digests_of_finished, expected_files, lost_files, read_bytes,
+                                   read_rows)
 
 SEED, TRIALS = 1, 1
 NO_FAULT = "no fault"
@@ -41,7 +42,48 @@ CRASH = re.compile(r"exit code -(?!2\b|9\b|15\b)\d+|Traceback|terminate called|S
 DISK_BYTES = 2 * 1024 * 1024
 COMPARED = [name for name in expected_files(TRIALS) if not name.endswith((".bag", "config.yaml"))]
 FEWEST_PAIRS = 5  # smallest number of pairs of image and torque in a bag that allows a verdict
+# Types of records in a bag: field `op` of their headers.
+RECORDS = {"header": 3, "index": 4, "chunk": 5, "chunk_info": 6, "connection": 7}
+VERSION_LINE = b"#ROSBAG V2.0\n"
 BAG, UNFINISHED = "new.bag", {"unfinished bag": "new.bag.active", "unfinished trial": "trial_001/trial.bag.active"}
+
+
+def write(path, content):
+    os.makedirs(os.path.dirname(path), exist_ok=True)
+    with open(path, "wb") as stream:
+        stream.write(content)
+
+
+def find_place(data, name):
+    """(begin, end) of a place in a file: its head, its end, its last digit, or the first record of a type in a bag."""
+    digit = data.rfind(b",") - 1  # last digit before the last column, which is text
+    places = {"": (0, len(data)), "head": (0, 8), "end": (len(data) - 16, len(data)), "digit": (digit, digit + 1),
+              "version": (0, len(VERSION_LINE))}
+    begin = len(VERSION_LINE)
+    while name not in places:
+        header_size, = struct.unpack_from("<I", data, begin)
+        header = data[begin + 4:begin + 4 + header_size]
+        data_size, = struct.unpack_from("<I", data, begin + 4 + header_size)
+        end = begin + 8 + header_size + data_size
+        if b"op=" + bytes([RECORDS[name]]) in header:
+            return begin, end
+        begin = end
+    return places[name]
+
+
+def damage(fault, path):
+    """Damages a file. fault: `cut|flip|remove [PLACE of] FILE`."""
+    verb, *place = fault.split()[:-1]
+    place = place[0] if place else ""
+    data = read_bytes(path)
+    middle = sum(find_place(data, place)) // 2
+    if verb == "remove":
+        os.remove(path)
+    elif verb == "cut":
+        write(path, data[:middle])
+    else:
+        bit = 0x01 if place == "digit" else 0x80  # 0x01 turns a digit into another digit
+        write(path, data[:middle] + bytes([data[middle] ^ bit]) + data[middle + 1:])
 
 
 @contextlib.contextmanager
@@ -139,7 +181,6 @@ class CaseRun:
         return output
 
     def observed(self):
-        """Runs the case and returns the observed outcome."""
         self.output = self.disturb()
         if self.report is None:
             return "not injected"
@@ -154,19 +195,18 @@ class CaseRun:
     ended = finished
 
     def named(self):
-        """Whether the output contains all words of the case."""
         missing = [word for word in self.case.words if word not in self.output]
         return "not named: " + " | ".join(missing) if missing else "named"
 
     def undamaged(self):
         """Whether all files that were finished before the fault, at least one trial, still have the same bytes after
         the fault and after resuming."""
-        damaged = self.resume() + self.before.lost(self.folder)
+        damaged = self.resume() + lost_files(self.before, self.folder)
         if not self.case.phase.endswith((REAL_TIME, ON_A_ROBOT)):  # two such experiments always differ
-            damaged += differences(self.bench.reference, self.folder, [name for name in COMPARED if name in self.before.files])
+            damaged += differences(self.bench.reference, self.folder, ["trials.csv"] + [name for name in COMPARED if name in self.before])
         if damaged:
             return "damaged: " + " ".join(sorted(set(damaged)))
-        return "undamaged" if self.before.files else "nothing to compare"
+        return "undamaged" if self.before else "nothing to compare"
 
     def resumes(self):
         """Whether the same command finishes the experiment."""
@@ -180,7 +220,7 @@ class CaseRun:
             return []
         self.resumed = True
         self.undo()
-        lost = self.before.lost(self.folder)
+        lost = lost_files(self.before, self.folder)
         self.log.write("\n--- the same command again ---\n")
         self.launch_and_log(NO_FAULT)
         return lost
@@ -213,7 +253,7 @@ class Live(CaseRun):
         if self.case.fault not in CONFIGS:
             self.report = json.loads(read_bytes(self.report_path)) if os.path.exists(self.report_path) else None
         if self.report:
-            self.before = Finished(*self.report["finished"])
+            self.before = self.report["finished"]
             self.log.write(self.report["said"])
             output += self.report["said"]
         return output
@@ -228,7 +268,6 @@ class Live(CaseRun):
         return self.report.get("motor", "the motor was not watched")
 
     def in_time(self):
-        """Whether plans take less than a time step."""
         header, *rows = read_rows(self.folder, "trials.csv")
         slowest_ms = max(float(row[header.index("plan_ms_median")]) for row in rows)
         return "in time" if slowest_ms < 1e3 * REAL_TIME_DT_S else "plans took %g ms" % slowest_ms
@@ -263,7 +302,7 @@ class AtRest(CaseRun):
         """Prepares the run folder with the fault and runs the command. Returns its output."""
         fault, folder, bench = self.case.fault, self.folder, self.bench
         shutil.copytree(bench.begun, folder, dirs_exist_ok=True)
-        self.before, self.undo = Finished.of(folder), lambda: None
+        self.before, self.undo = digests_of_finished(folder), lambda: None
         if fault in UNFINISHED:  # the rest of a bag whose recorder was killed
             content, path = read_bytes(bench.begun, "trial_000", "trial.bag"), os.path.join(folder, UNFINISHED[fault])
             self.half = content[:len(content) // 2]
@@ -292,7 +331,6 @@ class AtRest(CaseRun):
         return bench.launch(folder, "record.launch", arguments)
 
     def bags(self):
-        """Names of new bags, complete or not."""
         return {name for name in os.listdir(self.folder) if name.startswith(BAG)}
 
     def refused(self):

@@ -7,7 +7,7 @@ import time
 from tqdm import tqdm
 
 from ddm_launch.command import Failure, number, program_parser, run_program
-from ddm_launch.run_folder import write_csv
+from ddm_launch.run_folder import write_table
 from ddm_qa.fault_cases import CASES, FAULTS_OF_ROOT, QUICK
 from ddm_qa.fault_run import FaultBench
 
@@ -50,7 +50,7 @@ def run(options):
                 launch.stop()
             raise
     rows = [[*case[:4], observed[case.name], int(observed[case.name] == case.expected)] for case in cases]
-    write_csv(os.path.join(out, "faults.csv"), COLUMNS, rows)
+    write_table(os.path.join(out, "faults.csv"), rows, COLUMNS)
     num_passed = sum(row[-1] for row in rows)
     print("table: %s (%.0f s)" % (os.path.join(out, "faults.csv"), time.monotonic() - start))
     print("%d passed, %d failed" % (num_passed, len(rows) - num_passed))

@@ -41,26 +41,17 @@ def on_this_machine(**variables):
     return environment
 
 
-class Process:
+class Process(subprocess.Popen):
     """A program whose output (stdout and stderr together) can be read while it runs. As a context manager it ends the
     program."""
 
-    def __init__(self, command, environment=None, folder=None, output=None):
-        """output: file descriptor of a terminal that shows the output. The output is then not available here."""
+    def __init__(self, command, environment=None, folder=None):
         self._file = tempfile.TemporaryFile()
-        self._process = subprocess.Popen(
-            [str(word) for word in command], env=environment or line_by_line(), cwd=folder, stdin=subprocess.DEVNULL,
-            stdout=self._file if output is None else output, stderr=subprocess.STDOUT)
-
-    def __enter__(self):
-        return self
+        super().__init__([str(word) for word in command], env=environment or line_by_line(), cwd=folder,
+                         stdin=subprocess.DEVNULL, stdout=self._file, stderr=subprocess.STDOUT)
 
     def __exit__(self, *_):
         self.stop()
-
-    @property
-    def pid(self):
-        return self._process.pid
 
     @property
     def output(self):
@@ -79,25 +70,22 @@ class Process:
     def waitForEnd(self, limit_s):
         """Waits for the end and returns the exit code. Raises TimeoutError if the program does not end in time."""
         try:
-            return self._process.wait(limit_s)
+            return self.wait(limit_s)
         except subprocess.TimeoutExpired:
             self.stop()
             raise TimeoutError("not at its end after %g s:\n%s" % (limit_s, self.output)) from None
 
     def isRunning(self):
-        return self._process.poll() is None
-
-    def send(self, signal_number):
-        self._process.send_signal(signal_number)  # no effect if the program has ended
+        return self.poll() is None
 
     def stop(self, limit_s=20.0):
         """Ends the program by SIGINT, and by SIGKILL if it does not end within the limit."""
-        self.send(signal.SIGINT)
+        self.send_signal(signal.SIGINT)  # no effect if the program has ended
         try:
-            self._process.wait(limit_s)
+            self.wait(limit_s)
         except subprocess.TimeoutExpired:
-            self._process.kill()
-            self._process.wait()
+            self.kill()
+            self.wait()
 
 
 def start_roslaunch(log_folder, *arguments, port=None, folder=None, options=(), variables=None):

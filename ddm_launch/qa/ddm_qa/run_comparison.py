@@ -1,9 +1,9 @@
 # Compares two runs of the same experiment, and detects lost files.
 # SPDX-License-Identifier: BSD-3-Clause
-import collections
 import csv
 import hashlib
 import os
+import pathlib
 
 import yaml
 
@@ -26,11 +26,7 @@ def expected_files(num_trials):
 
 
 def files_in(folder):
-    """Paths of all files in a folder, relative to the folder."""
-    found = []
-    for parent, _, names in os.walk(folder):
-        found += [os.path.relpath(os.path.join(parent, name), folder) for name in names]
-    return sorted(found)
+    return sorted(str(path.relative_to(folder)) for path in pathlib.Path(folder).rglob("*") if path.is_file())
 
 
 def read_bytes(*path):
@@ -38,13 +34,7 @@ def read_bytes(*path):
         return stream.read()
 
 
-def read_yaml(*path):
-    with open(os.path.join(*path)) as stream:
-        return yaml.safe_load(stream)
-
-
 def read_rows(*path):
-    """Rows of a CSV file as lists of texts, starting with the header."""
     with open(os.path.join(*path), newline="") as stream:
         return list(csv.reader(stream))
 
@@ -68,7 +58,6 @@ def comparable(folder, name):
 
 
 def differences(first, second, names):
-    """Names of the files that differ between two runs."""
     return [name for name in names if comparable(first, name) != comparable(second, name)]
 
 
@@ -77,28 +66,19 @@ def digest(content):
 
 
 def digests(folder):
-    """{name: digest} of all files in a folder."""
     return {name: digest(read_bytes(folder, name)) for name in files_in(folder)}
 
 
-def head_of_table(folder, num_rows):
-    """Digest of the header and the first rows of trials.csv; None if the file does not exist."""
-    if not os.path.exists(os.path.join(folder, "trials.csv")):
-        return None
-    return digest(b"".join(read_bytes(folder, "trials.csv").splitlines(keepends=True)[:num_rows + 1]))
+def digests_of_finished(folder):
+    """{name: digest} of all files of finished trials, and {"row k": digest} of their rows in trials.csv."""
+    count = num_finished(folder)
+    folders = tuple("%s_%03d/" % (kind, k) for kind in ("trial", "evaluation") for k in range(count))
+    found = {name: value for name, value in digests(folder).items() if name.startswith(folders)}
+    rows = read_bytes(folder, "trials.csv").splitlines() if count > 0 else []
+    return dict(found, **{"row %d" % k: digest(row) for k, row in enumerate(rows)})
 
 
-class Finished(collections.namedtuple("Finished", "num_trials files")):
-    """Digests of all files of finished trials, and of their rows in trials.csv."""
-
-    @classmethod
-    def of(cls, folder):
-        count = num_finished(folder)
-        folders = tuple("%s_%03d/" % (kind, k) for kind in ("trial", "evaluation") for k in range(count))
-        files = {name: value for name, value in digests(folder).items() if name.startswith(folders)}
-        return cls(count, dict(files, **{"trials.csv": head_of_table(folder, count)}) if count else {})
-
-    def lost(self, folder):
-        """Names of files that are missing now or have changed."""
-        now = dict(digests(folder), **{"trials.csv": head_of_table(folder, self.num_trials)})
-        return sorted(name for name, value in self.files.items() if now.get(name) != value)
+def lost_files(before, folder):
+    """Names in digests_of_finished() of an earlier time that are missing now or have changed."""
+    now = digests_of_finished(folder)
+    return sorted(name for name, value in before.items() if now.get(name) != value)

@@ -47,7 +47,6 @@ Exit code: 0 all passed, 1 not, 2 bad options."""
 
 
 def judge(soak, samples, frames):
-    """Judges a run. Returns the rows of targets.csv."""
     last, rows = samples.trial.max(), []
     tenth = max(1, last // 10)
     for node, of_node in samples.groupby("node"):
@@ -88,7 +87,6 @@ def count_frames(run, folder, num_trials):
 
 
 def look(soak, processes, trial, seconds):
-    """Returns a row of soak.csv for each process."""
     for name, pid in processes.items():
         with open("/proc/%d/status" % pid) as stream:
             rss_kb = int(re.search(r"VmRSS:\s+(\d+) kB", stream.read()).group(1))
@@ -164,7 +162,7 @@ def run(options):
 def main():
     parser = program_parser("soak", ABOUT, EPILOG)
     parser.add_argument("--out", required=True, metavar="DIR", help="folder for tables and the experiments")
-    parser.add_argument("--trials", type=number(int, 1, 998), default=300, metavar="N",
+    parser.add_argument("--trials", type=number(int, 1), default=300, metavar="N",
                         help="of lockstep (default: %(default)s)")
     parser.add_argument("--minutes", type=number(float, 0.01), default=60.0, metavar="M",
                         help="of real_time (default: %(default)g)")

@@ -4,8 +4,6 @@ import argparse
 import contextlib
 import math
 import os
-import platform
-import re
 import signal
 import sys
 
@@ -101,16 +99,16 @@ def program_parser(name, about, epilog=None, **more):
     return Parser(prog=name, description=about, epilog=epilog, formatter_class=argparse.RawDescriptionHelpFormatter, **more)
 
 
-def number(kind, least, most=math.inf):
-    """Makes a type for argparse: numbers of the type `kind` (int or float) from `least` to `most`."""
+def number(kind, least):
+    """Makes a type for argparse: finite numbers of the type `kind` (int or float) from `least` on."""
     def parse(text):
         try:
             value = kind(text)
         except ValueError:
             value = math.nan
-        if not least <= value <= most:
-            raise argparse.ArgumentTypeError("must be a %s >= %g%s, got '%s'" % (
-                "whole number" if kind is int else "number", least, "" if most == math.inf else " and <= %g" % most, text))
+        if not least <= value < math.inf:
+            raise argparse.ArgumentTypeError("must be a %s >= %g, got '%s'" % (
+                "whole number" if kind is int else "number", least, text))
         return value
     return parse
 
@@ -124,17 +122,6 @@ def find_program(name, package="ddm_launch"):
     return found[0]
 
 
-def package_path(*names, package="ddm_launch"):
-    """Path of a file in the source folder of a package."""
-    return os.path.join(roslib.packages.get_pkg_dir(package), *names)
-
-
-def processor(path="/proc/cpuinfo"):
-    """Name of this machine's processor, with family and model numbers, which distinguish generations with the same
-    name."""
-    try:
-        with open(path) as stream:
-            facts = dict(re.findall(r"^(model name|cpu family|model)\s*: (.*)$", stream.read(), re.MULTILINE))
-        return "%s (family %s, model %s)" % (facts["model name"], facts["cpu family"], facts["model"])
-    except (OSError, KeyError):
-        return platform.processor() or platform.machine()
+def package_path(*names):
+    """Path of a file in the source folder of ddm_launch."""
+    return os.path.join(roslib.packages.get_pkg_dir("ddm_launch"), *names)

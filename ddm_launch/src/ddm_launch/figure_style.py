@@ -1,5 +1,6 @@
 # Style of all figures in print: sizes, fonts, colours and file format.
 # SPDX-License-Identifier: BSD-3-Clause
+import argparse
 import collections
 import contextlib
 import io
@@ -15,7 +16,6 @@ from ddm_model.plain_file import write_file  # noqa: E402
 
 # Widths for one column and for two columns [in]. Figures are printed at this size.
 COLUMN_WIDTH, PAGE_WIDTH = 3.4, 7.0
-DPI = 200
 
 # Colours of the Okabe-Ito set, which colour-blind readers can distinguish. Figures also vary markers and dashes.
 ORANGE, SKY, GREEN, YELLOW = "#E69F00", "#56B4E9", "#009E73", "#F0E442"
@@ -32,6 +32,7 @@ SETTINGS = {"font.size": 8, "axes.titlesize": 8, "axes.labelsize": 8, "xtick.lab
             "figure.constrained_layout.w_pad": 0.03, "figure.constrained_layout.h_pad": 0.03,
             "figure.constrained_layout.wspace": 0.02, "figure.constrained_layout.hspace": 0.02,
             "grid.color": "#dddddd", "grid.linewidth": 0.5, "axes.axisbelow": True, "legend.framealpha": 0.9}
+SCREEN = {"settings": {}, "dpi": 150}  # matplotlib's default style
 
 
 # A kind of figure. about: description; --help lists its first sentence. arguments: results of argument().
@@ -44,20 +45,23 @@ def argument(*words, **settings):
     return words, settings
 
 
+def labelled(text):
+    """Parses LABEL=PATH. Returns (label, path)."""
+    label, _, path = text.partition("=")
+    if not (label and path):
+        raise argparse.ArgumentTypeError("must be LABEL=PATH, got '%s'" % text)
+    return label, path
+
+
 @contextlib.contextmanager
-def new_figure(width, height, settings=SETTINGS, dpi=DPI):
-    """Context with a new figure of this size [in], which is closed at the end."""
+def new_figure(width, height, settings=SETTINGS, dpi=200):
+    """Context with a new figure of this size [in], which is closed at the end. `**SCREEN` makes a figure for screens."""
     with plt.rc_context(settings):
         figure = plt.figure(figsize=(width, height), dpi=dpi, constrained_layout=True)
         try:
             yield figure
         finally:
             plt.close(figure)
-
-
-def new_screen_figure(width, height):
-    """Context with a new figure in matplotlib's default style."""
-    return new_figure(width, height, settings={}, dpi=150)
 
 
 def save(figure, out):
@@ -80,14 +84,12 @@ def panel_above_legend(figure):
 
 
 def add_legend(figure, place, handles, labels, **options):
-    """Draws a legend without axes in a place of a grid."""
     axes = figure.add_subplot(place)
     axes.axis("off")
     axes.legend(handles, labels, loc="center", frameon=False, **options)
 
 
 def show_image(axes, image, **options):
-    """Draws a grey image without ticks."""
     axes.imshow(image, cmap="gray", vmin=0, vmax=255, **options)
     axes.set_xticks([])
     axes.set_yticks([])

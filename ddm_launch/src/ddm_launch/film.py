@@ -10,7 +10,7 @@ import numpy as np
 from PIL import Image
 
 from ddm_launch.command import Failure, number
-from ddm_launch.figure_style import (BLUE, GREY, ORANGE, VERMILLION, Figure, argument, new_screen_figure, save, save_image,
+from ddm_launch.figure_style import (BLUE, GREY, ORANGE, SCREEN, VERMILLION, Figure, argument, new_figure, save, save_image,
                                      show_image)
 from ddm_launch.plant import draw_evaluation
 from ddm_launch.run_folder import read_setting, read_trials, read_yaml
@@ -81,7 +81,7 @@ def read_clip(evaluation):
     seen = model.support_states if len(model.support_states) > 1 else features
     project = plane_of(seen)
     # If the goal is drawn in each trial, the goal in the model belongs to another trial.
-    drawn = (read_yaml(os.path.join(run, "config.yaml")).get("plant") or {}).get("goal_site")
+    drawn = (read_yaml(run, "config.yaml").get("plant") or {}).get("goal_site")
     goal = None if drawn or model.goal_feature is None else project(model.goal_feature[None])
     title = re.sub(r".*/(.*)\.yaml$", r"\1", read_setting(run, "experiment/plant"))
     for count in trials[trials.trial == trial].frames:
@@ -114,10 +114,9 @@ def draw_plane(axes, clip, now, middle, reach):
 
 
 def images_of(clip, count):
-    """Draws RGB images for the first `count` images of a clip."""
     points, drawn = np.concatenate([clip.support_states, clip.features]), []
     middle, reach = 0.5 * (points.max(axis=0) + points.min(axis=0)), 0.55 * np.ptp(points, axis=0).max() + 1e-9
-    with new_screen_figure(5.6, 3.0) as figure:
+    with new_figure(5.6, 3.0, **SCREEN) as figure:
         grid = figure.add_gridspec(2, 4)
         robot = figure.add_subplot(grid[:, :2])
         small = [figure.add_subplot(grid[row, column]) for row in (0, 1) for column in (2, 3)]
@@ -142,7 +141,6 @@ def images_of(clip, count):
 
 
 def draw_film(options):
-    """Draws evaluations one after the other into an animated WebP file."""
     if not options.out.lower().endswith(SUFFIX):
         raise Failure("a film must be a .webp, got '%s': give --out another name" % options.out)
     images, durations = [], []
@@ -156,7 +154,6 @@ def draw_film(options):
 
 
 def draw_strip(options):
-    """Draws a row of images, and below it the torques over the same time."""
     trials = read_trials(os.path.join(options.folder, "trials.csv"))
     successes = trials[trials.success > 0]
     trial = options.trial if options.trial is not None else (trials if successes.empty else successes).trial.iloc[-1]
@@ -165,7 +162,7 @@ def draw_strip(options):
     dt = float(read_setting(options.folder, "plant/dt"))
     shown = max(1, min(round(options.seconds / dt), len(images)))
     steps = range(0, shown, math.ceil(shown / STRIP_IMAGES))
-    with new_screen_figure(len(steps) * 1.0 + 0.6, 3.0) as figure:
+    with new_figure(len(steps) * 1.0 + 0.6, 3.0, **SCREEN) as figure:
         grid = figure.add_gridspec(2, len(steps), height_ratios=[1.0, 1.1])
         for column, step in enumerate(steps):
             axes = figure.add_subplot(grid[0, column])

@@ -10,8 +10,7 @@ from std_msgs.msg import String
 import yaml
 
 from ddm_launch.command import Failure
-from ddm_launch.figure_style import (BLUE, GREY, ORANGE, VERMILLION, Figure, argument, new_figure, new_screen_figure,
-                                     save)
+from ddm_launch.figure_style import BLUE, GREY, ORANGE, SCREEN, VERMILLION, Figure, argument, new_figure, save
 from ddm_launch.run_folder import LOADER, read_setting, read_trials
 
 
@@ -46,7 +45,7 @@ def draw_one(axes, trials, unit, tolerance):
 
 
 def draw(options):
-    with new_screen_figure(7.0, 4.2) as figure:
+    with new_figure(7.0, 4.2, **SCREEN) as figure:
         axes = figure.subplots()
         draw_one(axes, read_trials(os.path.join(options.folder, "trials.csv")), read_setting(options.folder, "goal/error_unit"),
                  float(read_setting(options.folder, "goal/tolerance")))
@@ -59,14 +58,6 @@ def draw(options):
         save(figure, options.out)
 
 
-def draw_model_errors(axes, table):
-    """Draws V_R and V_P per frame, for models that have them."""
-    for name, label, colour in (("v_r", "reconstruction V_R", GREY), ("v_p", "prediction V_P", ORANGE)):
-        known = table[table[name] > 0.0]
-        axes.semilogy(known.frames, known[name] / known.frames, color=colour, marker=".", label=label)
-    axes.legend(loc="upper right")
-
-
 def image_of(text):
     """Draws the image for a message on the topic `trials`: 640 x 480 pixels, RGB. The curves start at the left edge and
     grow to the right."""
@@ -75,7 +66,10 @@ def image_of(text):
         above, below = figure.subplots(2, 1, sharex=True, gridspec_kw={"height_ratios": (3, 2)})
         if news["trials_csv"].count("\n") > 1:
             trials = read_trials(io.StringIO(news["trials_csv"]))
-            draw_model_errors(below, trials)
+            for name, label, colour in (("v_r", "reconstruction V_R", GREY), ("v_p", "prediction V_P", ORANGE)):
+                known = trials[trials[name] > 0.0]
+                below.semilogy(known.frames, known[name] / known.frames, color=colour, marker=".", label=label)
+            below.legend(loc="upper right")
             try:
                 draw_one(above, trials, news["goal"]["error_unit"], news["goal"]["tolerance"])
             except Failure:

@@ -43,7 +43,6 @@ Episode = collections.namedtuple("Episode", "images views goal torques")
 
 
 def grey(image):
-    """Grey values of an image of one or three channels."""
     return np.asarray(Image.fromarray(image).convert("L"))
 
 
@@ -56,7 +55,7 @@ def draw_images(folder, start, torques=(), with_views=False, **episode):
     except ImportError as error:
         raise Failure("the Python bindings draw the images, and are missing (%s): build with -DDDM_PYTHON=ON" % error) from None
     plant = read_setting(folder, "experiment/plant")
-    env = ddm_sim.make(plant, plant=read_yaml(os.path.join(folder, "config.yaml")).get("plant", {}))
+    env = ddm_sim.make(plant, plant=read_yaml(folder, "config.yaml").get("plant", {}))
     seed = episode.pop("seed", 0)
     image, info = env.reset(seed=seed, options=dict(episode, start=start))
     images, views, goal = [grey(image)], [], grey(info["goal_image"])

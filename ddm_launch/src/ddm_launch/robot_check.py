@@ -56,7 +56,6 @@ def call(name, kind, *values, **fields):
 
 
 def show_goal_and_enable(goal):
-    """Shows the goal to the robot, then enables the motors, as a user would."""
     call("plant/reset", Reset, start=goal)
     for _ in range(3):  # the camera is one image late, and robot_node may not have received one yet
         rospy.wait_for_message("camera/image_raw", Image, LIMIT_S)
@@ -78,7 +77,7 @@ class RobotCheck:
         if rospy.get_param("~load"):
             start_load(self._runs, self._scratch.name)
         for name, kind, callback in (("plant/ground_truth/joint_states", JointState, self._on_truth),
-                                     ("latency", Float64, self._on_latency),
+                                     ("latency", Float64, lambda latency: self._latencies_ms.append(1e3 * latency.data)),
                                      ("deadline_misses", UInt32, self._on_misses),
                                      ("run_trial/goal", RunTrialActionGoal, self._on_goal),
                                      ("run_trial/result", RunTrialActionResult, self._on_result)):
@@ -88,9 +87,6 @@ class RobotCheck:
         with self._lock:
             if self._goal is not None:
                 self._truth[joints.header.stamp.to_nsec()] = largest_error(self._joints, joints.position)
-
-    def _on_latency(self, latency):
-        self._latencies_ms.append(1e3 * latency.data)
 
     def _on_misses(self, misses):
         self._misses = misses.data
@@ -130,13 +126,9 @@ def main():
     rospy.init_node("robot_check")
     try:
         joints = Joints(rospy.get_param("~plant"))
-    except Failure as failure:
-        rospy.logfatal("robot_check: %s", failure)
-        return 1
-    RobotCheck(joints)  # its subscribers keep it
-    try:
+        RobotCheck(joints)  # its subscribers keep it
         show_goal_and_enable(joints.facts["goal"])
-    except (rospy.ROSException, rospy.ServiceException) as error:
+    except (Failure, rospy.ROSException, rospy.ServiceException) as error:
         rospy.logfatal("robot_check: %s", error)
         return 1
     rospy.spin()

@@ -1,7 +1,5 @@
 # Reads run folders, which experiment.launch and run_experiment write, and other CSV and YAML files.
 # SPDX-License-Identifier: BSD-3-Clause
-import csv
-import io
 import os
 
 import numpy as np
@@ -14,10 +12,10 @@ from ddm_model.plain_file import write_file
 LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # CSafeLoader is ten times as fast
 
 
-def read_yaml(path):
+def read_yaml(*path):
     """Reads the mapping in a YAML file. Returns an empty mapping if the file is missing or has other content."""
     try:
-        with open(path) as stream:
+        with open(os.path.join(*path)) as stream:
             tree = yaml.load(stream, Loader=LOADER)
     except (OSError, UnicodeDecodeError, yaml.YAMLError):
         return {}
@@ -25,7 +23,6 @@ def read_yaml(path):
 
 
 def flat(tree, prefix=""):
-    """Flattens nested mappings to {"block/key": value}."""
     entries = {}
     for key, value in tree.items():
         entries.update(flat(value, "%s%s/" % (prefix, key)) if isinstance(value, dict) else {prefix + str(key): value})
@@ -67,15 +64,11 @@ def read_table(path, *numbers, remedy="is its folder a run folder?", once=()):
     return table
 
 
-def write_csv(path, header, rows):
-    """Writes a CSV file with six significant digits for floats. The file appears when it is complete. Raises OSError if
-    the file cannot be written."""
+def write_table(path, rows, columns):
+    """Writes a CSV file with six significant digits for floats; None is an empty cell. The file appears when it is
+    complete. Raises OSError if the file cannot be written."""
     os.makedirs(os.path.dirname(path) or ".", exist_ok=True)
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(header)
-    writer.writerows([["%.6g" % cell if isinstance(cell, float) else cell for cell in row] for row in rows])
-    write_file(path, text.getvalue())
+    write_file(path, pandas.DataFrame(rows, columns=columns).to_csv(index=False, float_format="%.6g"))
 
 
 def read_trials(path):
@@ -102,8 +95,7 @@ def read_torques(folder):
 
 
 def is_finished(folder):
-    """Whether summary.yaml says that the experiment is finished."""
-    return read_yaml(os.path.join(folder, "summary.yaml")).get("finished") is True
+    return read_yaml(folder, "summary.yaml").get("finished") is True
 
 
 def num_finished(folder):

@@ -1,6 +1,5 @@
 # Draws success rates over the number of frames learned from, together with the curves of the paper's Fig. 8.
 # SPDX-License-Identifier: BSD-3-Clause
-import argparse
 import collections
 import itertools
 import math
@@ -12,7 +11,7 @@ import pandas
 from ddm_launch.averages import success_rates
 from ddm_launch.command import Failure
 from ddm_launch.figure_style import (BLACK, COLUMN_WIDTH, GREY, METHOD_STYLES, SKY, YELLOW, Figure, add_legend, argument,
-                                     new_figure, panel_above_legend, save)
+                                     labelled, new_figure, panel_above_legend, save)
 from ddm_launch.run_folder import read_table, read_trials
 
 # The paper's methods: name, column of the published rate, column of its standard error (None: not published). Our curve
@@ -44,7 +43,6 @@ def read_curve(name, path, wilson=False):
 
 
 def read_published(path):
-    """Reads the paper's curves, in the order of METHODS."""
     table = read_table(path, "frames", *(name for method in METHODS for name in method[1:] if name),
                        remedy="it is results/published/success_rate.csv of ddm_launch").set_index("frames")
     curves = []
@@ -55,12 +53,6 @@ def read_published(path):
     return curves
 
 
-def level_line(rates, last_frames):
-    """Extends the rates of a method that learns from no images, such as the oracle, to a level line up to last_frames.
-    Returns other rates unchanged."""
-    return rates if list(rates.index) != [0] else pandas.concat([rates, rates.set_axis([last_frames])])
-
-
 def draw_curves(axes, curves, wilson):
     """Draws our curves with full lines and markers, above the paper's curves, which are dashed, open and lighter.
     wilson: draws intervals of our curves as bands."""
@@ -68,8 +60,9 @@ def draw_curves(axes, curves, wilson):
     others = itertools.cycle(OTHERS)
     for curve in curves:
         colour, marker = METHOD_STYLES.get(curve.name) or next(others)
-        rates = level_line(curve.rates, last_frames)
-        look = dict(color=colour, linestyle="-", elinewidth=0.8, zorder=3 if rates is curve.rates else 1)
+        rates, look = curve.rates, dict(color=colour, linestyle="-", elinewidth=0.8, zorder=3)
+        if list(rates.index) == [0]:  # a level line for a method that learns from no images, such as the oracle
+            rates, look["zorder"] = pandas.concat([rates, rates.set_axis([last_frames])]), 1
         if not curve.is_ours:
             look = dict(color=tuple(0.5 + 0.5 * part for part in to_rgb(colour)), linestyle="--", elinewidth=0.7,
                         markerfacecolor="white", linewidth=0.9, zorder=2)
@@ -84,14 +77,6 @@ def draw_curves(axes, curves, wilson):
     axes.set_xlabel("frames learned from [image-torque pairs]")
     axes.set_ylabel("success rate")
     axes.grid(True)
-
-
-def source(text):
-    """Parses LABEL=FILE.csv. Returns (label, path)."""
-    label, separator, path = text.partition("=")
-    if not (label and separator and path):
-        raise argparse.ArgumentTypeError("must be LABEL=FILE.csv, got '%s'" % text)
-    return label, path
 
 
 def draw(options):
@@ -111,7 +96,7 @@ def draw(options):
 FIGURE = Figure(
     "Success rate over the frames learned from. One curve per file of many seeds, with the standard error "
     "sqrt(p (1 - p) / (n - 1)); a level line where nothing is learned.",
-    [argument("curves", metavar="LABEL=FILE.csv", nargs="+", type=source,
+    [argument("curves", metavar="LABEL=FILE.csv", nargs="+", type=labelled,
               help="a label, and a trials.csv or sweep.csv; the labels %s have the colours of the paper's curves"
               % "; ".join(method[0] for method in METHODS)),
      argument("--published", metavar="FILE.csv",

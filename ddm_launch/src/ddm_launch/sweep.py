@@ -43,7 +43,6 @@ Slurm (--slurm):
 
 
 def seed_range(text):
-    """Parses "A:B" to range(A, B)."""
     match = re.match(r"(\d{1,10}):(\d{1,10})$", text)
     seeds = range(int(match.group(1)), int(match.group(2))) if match else ()
     if not 1 <= len(seeds) <= MAX_SEEDS:
@@ -52,7 +51,9 @@ def seed_range(text):
     return seeds
 
 
-def make_parser():
+def parse(arguments):
+    """Returns (options, arguments of the program). If the arguments are wrong, prints a message and ends the process
+    with code 2."""
     parser = program_parser(
         "sweep", ABOUT, EPILOG, allow_abbrev=False,
         usage="rosrun ddm_launch sweep --seeds A:B --out DIR [options] [options of the program, also after --]")
@@ -65,13 +66,6 @@ def make_parser():
     parser.add_argument("--slurm", action="store_true", help="run as a Slurm job array")
     parser.add_argument("--program", choices=sorted(TABLES), default="run_experiment",
                         help="default run_experiment")
-    return parser
-
-
-def parse(arguments):
-    """Returns (options, arguments of the program). If the arguments are wrong, prints a message and ends the process
-    with code 2."""
-    parser = make_parser()
     split = arguments.index("--") if "--" in arguments else len(arguments)
     options, more = parser.parse_known_args(arguments[:split])
     more += [expand_home(word) for word in arguments[split + 1:]]
@@ -87,7 +81,6 @@ def parse(arguments):
 
 
 def run_seeds(engine, folder, seeds):
-    """Runs the seeds that are not finished, and prints a line for each seed that finishes."""
     pending = [seed for seed in seeds if not folder.is_finished(seed)]
 
     def tell():

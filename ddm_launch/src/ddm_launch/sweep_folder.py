@@ -60,23 +60,22 @@ def lock(path):
 
     Raises Failure if a process that may be running has the lock, OSError if the file cannot be written.
     """
-    for attempt in range(2):
-        try:
-            with open(path, "x") as stream:
-                stream.write("%s %d\n" % (platform.node(), os.getpid()))
-            return
-        except FileExistsError:
-            with open(path, errors="replace") as stream:
-                host, _, pid = stream.read().strip().partition(" ")
-        except OSError:  # for example, the disk is full
-            with contextlib.suppress(OSError):
-                os.remove(path)
-            raise
-        has_ended = host == platform.node() and pid.isdigit() and not os.path.exists("/proc/" + pid)
-        if attempt > 0 or not has_ended:
-            raise Failure("another sweep is running in the folder %s: process %s on %s. Wait for it, or use another folder. If you "
-                          "are sure that this process has ended, delete %s" % (os.path.dirname(path), pid or "?", host or "?", path))
-        os.remove(path)
+    host = pid = ""
+    with contextlib.suppress(FileNotFoundError):
+        with open(path, errors="replace") as stream:
+            host, _, pid = stream.read().strip().partition(" ")
+        if host == platform.node() and pid.isdigit() and not os.path.exists("/proc/" + pid):
+            os.remove(path)  # that sweep has ended without removing it
+    try:
+        with open(path, "x") as stream:
+            stream.write("%s %d\n" % (platform.node(), os.getpid()))
+    except FileExistsError:
+        raise Failure("another sweep is running in the folder %s: process %s on %s. Wait for it, or use another folder. If you are "
+                      "sure that this process has ended, delete %s" % (os.path.dirname(path), pid or "?", host or "?", path)) from None
+    except OSError:  # for example, the disk is full
+        with contextlib.suppress(OSError):
+            os.remove(path)
+        raise
 
 
 class SweepFolder:
@@ -150,14 +149,12 @@ class SweepFolder:
         return os.path.join(self.path, "logs", "seed_%04d.log" % seed)
 
     def is_finished(self, seed):
-        """Whether the seed is finished, with at least the requested number of trials."""
-        summary = read_yaml(os.path.join(self.seed_folder(seed), "summary.yaml"))
+        summary = read_yaml(self.seed_folder(seed), "summary.yaml")
         trials = summary.get("trials")
         return summary.get("finished") is True and (
             self.trials is None or (isinstance(trials, int) and trials >= self.trials))
 
     def prepare(self, seeds):
-        """Writes the script for one seed, and removes the old logs of these seeds."""
         quoted = {name: shlex.quote(text) for name, text in (
             ("folder", self.path), ("setup", self._setup), ("working_folder", os.getcwd()))}
         write_file(self.script, SCRIPT.format(command=" ".join(map(shlex.quote, DIE_WITH_PARENT + self._command)), **quoted))
@@ -210,7 +207,7 @@ class SweepFolder:
 
     def _require_same_experiment(self, first, first_table, seed, table):
         """Raises Failure if columns or configuration of this seed differ from those of the first finished seed."""
-        there, here = (read_yaml(os.path.join(self.seed_folder(k), "config.yaml")) for k in (first, seed))
+        there, here = (read_yaml(self.seed_folder(k), "config.yaml") for k in (first, seed))
         found = differences(there, here, MAY_DIFFER)
         if list(first_table) != list(table):
             found.append("columns of %s" % self._table_of_seed)

@@ -46,7 +46,6 @@ def policies(runs):
 
 
 def last_models(runs):
-    """Success and mean return of the last model of each seed."""
     rows = []
     for seed, folder in runs.items():
         episodes = read_table(folder, "last_model", "evaluation.csv")

@@ -24,7 +24,6 @@ MARKER_DISTANCE = 0.12  # distance between markers along a curve, in diagonals o
 
 
 def draw_trajectories(options):
-    """Draws a panel for each number of frames, all with the same axes, and a legend below."""
     table = read_table(options.file)
     table["turns"] = table.angle_rad / math.pi
     panels = list(table.groupby("frames"))
@@ -57,7 +56,6 @@ def draw_trajectories(options):
 
 
 def draw_task(options):
-    """Draws the returns of published methods and ours, with ours on top. The upper axis shows robot time."""
     task, step_s = SUITE[options.task]
     published = read_table(package_path("results", "published", "suite_returns.csv"))
     ours = returns(options.table)

@@ -10,7 +10,7 @@ from tqdm import tqdm
 
 from ddm_launch.command import Failure
 from ddm_launch.plant import Joints
-from ddm_launch.run_folder import read_setting, read_table, read_yaml, write_csv
+from ddm_launch.run_folder import read_setting, read_table, read_yaml, write_table
 from ddm_model.model import load
 from ddm_model.model_data import ModelDataError, read_bags
 
@@ -42,7 +42,6 @@ def share_near_goal(joints, positions):
 
 
 def read_trial(run, trial, joints, image_size):
-    """Reads all Episodes of a trial."""
     first = os.path.join(run, "trial_%03d" % trial)
     folders = [first] + sorted(glob.glob(os.path.join(first, "episode_*")))
     bags = read_bags([os.path.join(folder, "trial.bag") for folder in folders], image_size)
@@ -94,10 +93,10 @@ def diagnose(run):
         for name, unit, column in zip(joints.names, joints.units, np.concatenate(errors).T if errors else []):
             scale, shown = (180.0 / math.pi, "deg") if unit == "rad" else (1.0, unit)
             rows.append([plant, seed, len(positions), "prediction" if steps else "features", steps, name, shown,
-                         scale * np.median(column), scale * np.quantile(column, 0.9), ""])
+                         scale * np.median(column), scale * np.quantile(column, 0.9), None])
     # Plants with goal_site draw another goal in each trial.
-    if not read_yaml(os.path.join(run, "config.yaml"))["plant"].get("goal_site"):
-        rows.append([plant, seed, len(positions), "goal", "", "all", "", "", "", share_near_goal(joints, positions)])
+    if not read_yaml(run, "config.yaml")["plant"].get("goal_site"):
+        rows.append([plant, seed, len(positions), "goal", None, "all", None, None, None, share_near_goal(joints, positions)])
     return rows
 
 
@@ -108,7 +107,7 @@ def work(options):
             rows += diagnose(run)
         except (OSError, ModelDataError) as error:
             raise Failure("%s: %s" % (run, error))
-    write_csv(options.out, COLUMNS, rows)
+    write_table(options.out, rows, COLUMNS)
     print("wrote %s" % options.out)
 
 

@@ -5,7 +5,7 @@ import os
 import numpy as np
 
 from ddm_launch.figure_style import (COLUMN_WIDTH, GREEN, PAGE_WIDTH, SKY, VERMILLION, YELLOW, Figure, add_legend, argument,
-                                     new_figure, panel_above_legend, save, show_image)
+                                     labelled, new_figure, panel_above_legend, save, show_image)
 from ddm_launch.plant import draw_images
 from ddm_model.feature_grid import GRID, FeatureGrid
 from ddm_model.model import load
@@ -24,7 +24,6 @@ def decode(path, features):
 
 
 def draw_plane(options):
-    """Draws the feature plane of each folder in a panel."""
     width = COLUMN_WIDTH if len(options.folders) == 1 else PAGE_WIDTH
     with new_figure(width, width / len(options.folders) + 0.35) as figure:
         grid = figure.add_gridspec(2, len(options.folders), height_ratios=[1.0, 0.001])
@@ -44,8 +43,6 @@ def draw_plane(options):
 
 
 def draw_strip(options):
-    """Draws true images, and below them the model's reconstruction and predictions. The first column shows the frame
-    from which the model predicts."""
     strip = read_table(options.folder, "strip.csv")
     features = [name for name in strip if name.startswith("z_")]
     states = strip.drop(columns=features + ["steps"])
@@ -86,17 +83,11 @@ def draw_space(options):
         save(figure, options.out)
 
 
-def titled(text):
-    """Parses TITLE=DIR. Returns (title, folder)."""
-    title, _, folder = text.rpartition("=")
-    return title, folder
-
-
 PLANE = Figure(
     "The plane of features of folders of prediction_experiment, side by side. %d x %d images that the model decodes, over "
     "the smallest rectangle that holds the features of all frames and a margin, and on them the features of training and "
     "held-out frames." % (GRID, GRID),
-    [argument("folders", metavar="TITLE=DIR", nargs="+", type=titled, help="folder of prediction_experiment")], draw_plane)
+    [argument("folders", metavar="LABEL=DIR", nargs="+", type=labelled, help="folder of prediction_experiment")], draw_plane)
 STRIP = Figure(
     "True images, and the model's long-term predictions of the same frames below. The column 'now' is the frame from which "
     "the model predicts; below it is its reconstruction.",
