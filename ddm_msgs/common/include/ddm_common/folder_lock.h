@@ -8,8 +8,7 @@ namespace ddm {
 
 /// While this object exists, no other process can lock the folder, on any machine that shares it.
 ///
-/// The lock is the file FOLDER/.lock, which names its owner. Kernel locks such as flock() are
-/// missing on some cluster file systems or work within one machine only. All file systems can
+/// The lock is the file FOLDER/.lock, which names its owner: "HOST PROCESS_ID". All file systems can
 /// create a file exclusively and rename a file:
 ///
 ///   1. A process that requests the lock creates .lock.new exclusively, with its own name.
@@ -18,11 +17,12 @@ namespace ddm {
 ///   3. The owner deletes .lock at its end.
 ///
 /// Only the creator of .lock.new replaces .lock, and only its owner deletes .lock. In step 2, .lock
-/// therefore cannot become the lock of a living process. SIGINT, SIGTERM and SIGHUP also delete
-/// .lock, unless the program handles these signals. The lock of a killed process remains. If the
-/// killed process ran on this machine, the next process replaces the lock. If the killed process
-/// ran on another machine, this machine cannot find out that the process has ended, and the lock
-/// remains.
+/// therefore cannot become the lock of a living process. SIGINT, SIGTERM and SIGHUP also delete the
+/// .lock of the last object, unless the program handles these signals. The lock of a killed process
+/// remains. flock() tells the next process on the same machine that the owner has ended, and this
+/// process replaces the lock. Another machine cannot be sure, because flock() works within one
+/// machine only on some cluster file systems. There, and if the file system does not have flock(),
+/// the lock remains.
 class FolderLock {
  public:
   /// @param folder  path of an existing folder
@@ -35,7 +35,8 @@ class FolderLock {
 
  private:
   std::string path_;   // path of .lock
-  std::string owner_;  // content of .lock
+  std::string owner_;  // first line of .lock
+  int file_ = -1;      // descriptor of .lock, which holds the flock()
 };
 
 }  // namespace ddm
