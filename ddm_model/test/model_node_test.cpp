@@ -19,7 +19,7 @@
 #include <mutex>
 
 #include "ddm_model/model_file.h"
-#include "ddm_msgs/testing/refused_params.h"
+#include "ddm_msgs/testing/expect_error.h"
 #include "ddm_msgs/testing/run_program.h"
 #include "ddm_msgs/testing/temp_folder.h"
 #include "toy_bags.h"
@@ -167,13 +167,14 @@ TEST_F(ModelNodeTest, ATrainingThatFailsTellsWhyAndCanBePreemptedWhileItReadsBag
   EXPECT_EQ(failing.getState(), State::PREEMPTED) << failing.getState().getText();
 }
 
-using ModelNodeParams = testing::RefusedParams;
-
-TEST_F(ModelNodeParams, RefusesToStartWithParametersThatAreWrong) {
+TEST(ModelNodeParams, RefusesToStartWithParametersThatAreWrong) {
   ros::param::set("/bad_node/training/max_iteratoins", 3);
   ros::param::set("/bad_node/model/order", 0);
-  expectRefused("timeout 20 " DDM_MODEL_NODE,
-                {"training/max_iteratoins", "model/order", "[1, 50]", "got 0"});
+  const testing::Outcome outcome =
+      testing::run("timeout 20 " DDM_MODEL_NODE " __name:=bad_node 2>&1");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_TRUE(
+      testing::names(outcome.out, {"training/max_iteratoins", "model/order", "[1, 50]", "got 0"}));
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include "ddm_common/config_blocks.h"
 
 #include <filesystem>
-#include <fstream>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -32,30 +31,9 @@ void requireUniqueKeys(const YAML::Node& map, const std::string& path) {
   }
 }
 
-std::string readText(const std::string& path) {
-  // A folder can be opened like a file and then reads as an empty file.
-  std::error_code ignored;
-  std::ifstream in(path);
-  if (std::filesystem::is_directory(path, ignored) || !in) {
-    throw std::runtime_error("cannot read the configuration file " + path);
-  }
-  std::string text(kMaxBytes + 1, '\0');
-  in.read(&text[0], static_cast<std::streamsize>(text.size()));
-  if (in.bad()) throw std::runtime_error("cannot read the configuration file " + path);
-  text.resize(static_cast<std::size_t>(in.gcount()));
-  if (text.size() <= kMaxBytes) return text;
-  throw std::runtime_error(path + " has more than " + std::to_string(kMaxBytes) +
-                           " bytes: it is not a configuration file");
-}
-
 /// Keys whose values are paths of files.
 constexpr std::pair<const char*, const char*> kFileKeys[] = {
     {"plant", "model"}, {"robot", "goal_file"}, {"start", "model"}, {"start", "bags"}};
-
-/// Whether the name of a plant is the path of a .yaml file.
-bool isPlantFile(const YAML::Node& name) {
-  return name.IsScalar() && std::filesystem::path(name.Scalar()).extension() == ".yaml";
-}
 
 /// Makes a relative path, or each relative path of a list, absolute from `folder`; package:// URLs
 /// stay unchanged.
@@ -71,13 +49,21 @@ void resolvePaths(const std::filesystem::path& folder, YAML::Node value) {
 }  // namespace
 
 YAML::Node readBlocks(const std::string& path) {
-  const YAML::Node blocks = parseBlocks(readText(path), path);
+  const std::string text = readFile(path);
+  if (text.size() > kMaxBytes) {
+    throw std::runtime_error(path + " has more than " + std::to_string(kMaxBytes) +
+                             " bytes: it is not a configuration file");
+  }
+  const YAML::Node blocks = parseBlocks(text, path);
   const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
   for (const auto& [block, key] : kFileKeys) {
     if (hasKey(blocks, block, key)) resolvePaths(folder, blocks[block][key]);
   }
-  if (hasKey(blocks, "experiment", "plant") && isPlantFile(blocks["experiment"]["plant"])) {
-    resolvePaths(folder, blocks["experiment"]["plant"]);
+  if (hasKey(blocks, "experiment", "plant")) {
+    const YAML::Node plant = blocks["experiment"]["plant"];
+    const bool is_file =
+        plant.IsScalar() && std::filesystem::path(plant.Scalar()).extension() == ".yaml";
+    if (is_file) resolvePaths(folder, plant);
   }
   return blocks;
 }

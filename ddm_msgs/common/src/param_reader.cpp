@@ -8,7 +8,6 @@
 
 #include "ddm_common/config_blocks.h"
 #include "ddm_common/option_checks.h"
-#include "ddm_common/yaml_text.h"
 
 namespace ddm {
 namespace {
@@ -78,11 +77,6 @@ void ParamReader::reportUnknownKeys(const std::string& block, const YAML::Node& 
       report("unknown key " + block + "/" + key + hint(key, "keys", known_keys));
     }
   }
-}
-
-void ParamReader::reportWrongType(const std::string& path, const YAML::Node& value,
-                                  const std::string& expected) {
-  report(path + " must be " + expected + ", got " + oneLine(value));
 }
 
 void ParamReader::report(const std::string& problem) {

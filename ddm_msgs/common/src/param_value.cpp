@@ -31,13 +31,13 @@ bool parseText(std::string text, int* value) {
 bool parseText(const std::string& text, double* value) {
   const std::string unsigned_text = text.substr(text.find_first_not_of("+-") == 1 ? 1 : 0);
   const double sign = !text.empty() && text[0] == '-' ? -1.0 : 1.0;
-  for (const char* infinite : {".inf", ".Inf", ".INF", "inf"}) {
+  for (const char* infinite : {".inf", ".Inf", ".INF", "inf", "Infinity"}) {
     if (unsigned_text == infinite) {
       *value = sign * std::numeric_limits<double>::infinity();
       return true;
     }
   }
-  for (const char* nan : {".nan", ".NaN", ".NAN", "nan"}) {
+  for (const char* nan : {".nan", ".NaN", ".NAN", "nan", "NaN"}) {
     if (text == nan) {
       *value = std::numeric_limits<double>::quiet_NaN();
       return true;

@@ -64,6 +64,7 @@ TEST(ParamValue, HasTheStrictTextsOfEachType) {
                       {"+0.5", 0.5},
                       {".inf", kInf},
                       {"+.inf", kInf},
+                      {"-Infinity", -kInf},  // of JSON
                       {"-.inf", -kInf}},
                      {"high", "1e", "0x10", "1,5", "1 2", "1e999", "--1", "''", "~", "[1]", "true"},
                      42.0);
@@ -84,7 +85,7 @@ TEST(ParamValue, HasTheStrictTextsOfEachType) {
 }
 
 TEST(ParamValue, ReadsNaNSoThatTheOptionsCanRefuseIt) {
-  for (const char* text : {".nan", ".NaN", "nan"}) {
+  for (const char* text : {".nan", ".NaN", "nan", "NaN"}) {
     double value = 0.0;
     EXPECT_TRUE(parses(text, &value)) << text;
     EXPECT_TRUE(std::isnan(value)) << text;

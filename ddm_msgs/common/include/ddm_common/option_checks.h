@@ -110,22 +110,15 @@ class OptionChecks {
   std::vector<std::string> problems_;
 };
 
-/// Requires that the list of problems is empty.
-/// @throws std::invalid_argument with all problems, one per line, if there are any
-inline void requireNone(const std::vector<std::string>& problems) {
-  if (problems.empty()) return;
-  std::string all;
-  for (const std::string& problem : problems) all += "\n- " + problem;
-  throw std::invalid_argument("invalid options:" + all);
-}
-
 /// Returns `options` unchanged. Use it in an initialiser list, so that the check comes before the
 /// first use of the values.
-/// @throws std::invalid_argument with all of its problems
+/// @throws std::invalid_argument with all of its problems, one per line
 template <class Options>
 const Options& checked(const Options& options) {
-  requireNone(options.problems());
-  return options;
+  std::string problems;
+  for (const std::string& problem : options.problems()) problems += "\n- " + problem;
+  if (problems.empty()) return options;
+  throw std::invalid_argument("invalid options:" + problems);
 }
 
 }  // namespace ddm

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "ddm_common/param_value.h"
+#include "ddm_common/yaml_text.h"
 
 namespace ddm {
 
@@ -61,9 +62,6 @@ class ParamReader {
   template <class Options>
   Options read(const std::string& block);
 
-  /// Adds a problem that concerns several blocks.
-  void report(const std::string& problem);
-
   /// All problems found so far, including unknown blocks. Empty if the configuration is valid.
   std::vector<std::string> problems() const;
 
@@ -74,10 +72,9 @@ class ParamReader {
   /// Marks the block as known and returns its keys; an empty map if the configuration does not
   /// contain the block.
   YAML::Node openBlock(const std::string& block);
+  void report(const std::string& problem);
   void reportUnknownKeys(const std::string& block, const YAML::Node& values,
                          const std::vector<std::string>& known_keys);
-  void reportWrongType(const std::string& path, const YAML::Node& value,
-                       const std::string& expected);
 
   YAML::Node root_;
   std::string source_;
@@ -95,7 +92,7 @@ Options ParamReader::read(const std::string& block) {
     known_keys.push_back(key);
     const YAML::Node given = values[key];
     if (given.IsDefined() && !parseValue(given, &value)) {
-      reportWrongType(block + "/" + key, given, expectedType(&value));
+      report(block + "/" + key + " must be " + expectedType(&value) + ", got " + oneLine(given));
     }
   };
   Options options;

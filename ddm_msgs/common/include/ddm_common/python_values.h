@@ -5,7 +5,7 @@
 #include <ddm_common/config_blocks.h>
 #include <ddm_common/image_codec.h>
 #include <ddm_common/option_checks.h>
-#include <ddm_common/param_value.h>
+#include <ddm_common/yaml_text.h>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <yaml-cpp/yaml.h>
@@ -199,37 +199,20 @@ class Images {
   Eigen::Index height_ = 0, width_ = 0, channels_ = 1;
 };
 
-/// Converts blocks (depth 0), a block (depth 1), or the value of an option (depth 2) to YAML, with
-/// the text that a file would have.
+/// Converts a value of Python to YAML by way of JSON, which is valid YAML. Arrays of NumPy become
+/// lists.
 /// @throws py::type_error naming the option if a YAML file cannot have such a value
-inline YAML::Node yamlOf(const py::handle& value, const std::string& name, int depth) {
-  PyObject* const object = value.ptr();
-  if (value.is_none()) return YAML::Node(YAML::NodeType::Null);
-  if (PyBool_Check(object)) return valueToYaml(object == Py_True);
-  if (PyUnicode_Check(object) || PyIndex_Check(object)) {
-    return YAML::Node(utf8Of(py::str(value), "option " + name));
+inline YAML::Node yamlOf(const py::handle& value, const std::string& name) {
+  try {
+    const py::object to_list = py::module::import("operator").attr("methodcaller")("tolist");
+    const py::object text = py::module::import("json").attr("dumps")(
+        value, py::arg("default") = to_list, py::arg("ensure_ascii") = false);
+    return parseYaml(utf8Of(text, "option " + name), "option " + name);
+  } catch (const py::error_already_set&) {
+    throw py::type_error("option " + name +
+                         " must be a number, true or false, a text or a list, got " +
+                         describe(value));
   }
-  if (py::isinstance<py::dict>(value) && depth < 2) {
-    YAML::Node map(YAML::NodeType::Map);
-    for (const auto& entry : py::reinterpret_borrow<py::dict>(value)) {
-      const std::string key = utf8Of(py::str(entry.first), "a key of option " + name);
-      map[key] = yamlOf(entry.second, name + "/" + key, depth + 1);
-    }
-    return map;
-  }
-  const bool list = PyList_Check(object) || PyTuple_Check(object) ||
-                    (py::isinstance<py::array>(value) && value.attr("ndim").cast<int>() > 0);
-  if (list && depth < 6) {
-    YAML::Node sequence(YAML::NodeType::Sequence);
-    for (const py::handle& element : value) sequence.push_back(yamlOf(element, name, depth + 1));
-    return sequence;
-  }
-  if (PyFloat_Check(object) || py::hasattr(value, "__float__")) {
-    return valueToYaml(py::float_(py::reinterpret_borrow<py::object>(value)).cast<double>());
-  }
-  throw py::type_error("option " + name +
-                       " must be a number, true or false, a text or a list, got " +
-                       describe(value));
 }
 
 /// Converts YAML blocks to a dictionary.
@@ -247,18 +230,18 @@ inline YAML::Node mergedBlocks(const py::iterable& layers, const py::dict& optio
   YAML::Node merged(YAML::NodeType::Map);
   for (const py::handle& layer : layers) {
     overlay(py::isinstance<py::str>(layer) ? readBlocks(layer.cast<std::string>())
-                                           : yamlOf(layer, "plant", 0),
+                                           : yamlOf(layer, "plant"),
             &merged);
   }
   for (const auto& option : options) {
     const std::string name = utf8Of(option.first, "the name of an option");
     YAML::Node given(YAML::NodeType::Map);
     std::vector<std::string> known;
-    if (py::isinstance<py::dict>(option.second)) given[name] = yamlOf(option.second, name, 1);
+    if (py::isinstance<py::dict>(option.second)) given[name] = yamlOf(option.second, name);
     for (const auto& block : own) {
       for (const auto& key : block.second) known.push_back(key.first.Scalar());
       if (given.size() > 0 || !hasKey(own, block.first.Scalar(), name)) continue;
-      given[block.first.Scalar()][name] = yamlOf(option.second, name, 2);
+      given[block.first.Scalar()][name] = yamlOf(option.second, name);
     }
     if (given.size() == 0) {
       std::string message = "unknown option " + name + ": there are";

@@ -12,7 +12,11 @@
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <type_traits>
 #include <utility>
+
+#include "ddm_common/option_checks.h"
+#include "ddm_common/topic_peers.h"
 
 namespace ddm {
 
@@ -22,10 +26,11 @@ namespace ddm {
 /// @param check  called every 20 ms while waiting; may throw to end the wait
 /// @return the result of the function; empty if the function did not return in time. Exceptions of
 ///         the function are passed on
-template <class Function, class Check>
-auto callWithin(std::chrono::duration<double> limit, Function function, const Check& check)
-    -> std::optional<decltype(function())> {
-  std::packaged_task<decltype(function())()> task(std::move(function));
+template <class Function>
+std::optional<std::invoke_result_t<Function>> callWithin(
+    std::chrono::duration<double> limit, Function function,
+    const std::function<void()>& check = [] {}) {
+  std::packaged_task<std::invoke_result_t<Function>()> task(std::move(function));
   auto result = task.get_future();
   std::thread(std::move(task)).detach();
   const auto end = std::chrono::steady_clock::now() + limit;
@@ -36,22 +41,20 @@ auto callWithin(std::chrono::duration<double> limit, Function function, const Ch
   return result.get();
 }
 
-template <class Function>
-auto callWithin(std::chrono::duration<double> limit, Function function)
-    -> std::optional<decltype(function())> {
-  return callWithin(limit, std::move(function), [] {});
-}
-
 constexpr char kInterrupted[] = "interrupted; the same command resumes";
 
 /// Formats a limit [s] as " (waited 60 s)", for messages.
-std::string waited(double limit);
+inline std::string waited(double limit) { return textOf(" (waited ", limit, " s)"); }
 
 /// As callWithin(); also ends on shutdown.
 /// @param limit  wall time [s]
 /// @return the result of the function; empty after the limit
 /// @throws std::runtime_error on shutdown
-std::optional<bool> answerWithin(double limit, std::function<bool()> function);
+inline std::optional<bool> answerWithin(double limit, std::function<bool()> function) {
+  return callWithin(std::chrono::duration<double>(limit), std::move(function), [] {
+    if (!ros::ok()) throw std::runtime_error(kInterrupted);
+  });
+}
 
 /// Calls a service. The limit includes the time to connect, because a connection to a stopped
 /// master or an unreachable host can take minutes.
@@ -96,6 +99,10 @@ void callService(const std::string& name, ros::ServiceClient* client, Service* s
 /// construction of an action client, which would wait without a limit.
 /// @param limit  wall time [s]
 /// @throws std::runtime_error after the limit, with the nodes that publish /clock
-void waitForSimulatedTime(double limit);
+inline void waitForSimulatedTime(double limit) {
+  if (ros::Time::waitForValid(ros::WallDuration(limit)) || !ros::ok()) return;
+  throw std::runtime_error("simulated time does not come" + waited(limit) + ", " +
+                           describePublishers("/clock"));
+}
 
 }  // namespace ddm

@@ -80,24 +80,14 @@ class FuzzBytes {
     Number value = 0;
     const std::size_t size = sizeof(value) < left_ ? sizeof(value) : left_;
     std::copy(at_, at_ + size, reinterpret_cast<char*>(&value));
-    skip(size);
+    at_ += size;
+    left_ -= size;
     return value;
   }
-  /// Reads `size` bytes, or fewer at the end of the input.
-  std::string text(std::size_t size) {
-    const std::string out(at_, size < left_ ? size : left_);
-    skip(out.size());
-    return out;
-  }
-  std::string rest() { return text(left_); }
+  std::string rest() const { return std::string(at_, left_); }
   bool empty() const { return left_ == 0; }
 
  private:
-  void skip(std::size_t size) {
-    at_ += size;
-    left_ -= size;
-  }
-
   const char* at_;
   std::size_t left_;
 };
