@@ -4,8 +4,6 @@
 injected, so the moment of a fault is exact. The phase `training` is an exception: its fault comes when the first
 progress of the training arrives. The report contains the trials that were finished at that moment, and the torques that
 acted afterwards."""
-import collections
-import copy
 import json
 import multiprocessing
 import os
@@ -26,6 +24,7 @@ import yaml
 from ddm_launch.command import find_program
 from ddm_model.plain_file import write_file
 from ddm_qa.fault_cases import ON_A_ROBOT, REAL_TIME
+from ddm_qa.fault_changes import CHANGES
 from ddm_qa.processes import pid_of
 from ddm_qa.run_comparison import digests_of_finished
 
@@ -47,57 +46,6 @@ OTHER_LIMIT = ("experiment", "timeout")
 INTRUDED = {"torque": (["torque", "plant/torque"], lambda: Torque(torque=[6.0])),
             "image": (["camera/image_raw"], lambda: Image(width=51, height=51, encoding="mono8", step=51, data=bytes(51 * 51))),
             "model": (["model"], lambda: Model(id="00000000", data=b"no model at all")), "clock": (["/clock"], Clock)}
-
-# Changed fields of an altered image, torque or joint state.
-ALTERED = {
-    "nan": lambda torque: {"torque": [float("nan")]}, "inf": lambda torque: {"torque": [float("inf")]},
-    "1e300": lambda torque: {"torque": [1e300]}, "none": lambda torque: {"torque": []},
-    "twice": lambda torque: {"torque": list(torque.torque) * 2},
-    "size": lambda image: dict(dict.fromkeys(("width", "height", "step"), image.width // 2),
-                               data=image.data[:(image.width // 2) ** 2]),
-    "encoding": lambda image: {"encoding": "rgb8", "step": 3 * image.step, "data": 3 * image.data},
-    "unknown": lambda image: {"encoding": "smell"},
-    "cut": lambda image: {"data": image.data[:len(image.data) // 2]},
-    "unstamped": lambda image: {"header": type(image.header)(frame_id=image.header.frame_id)},
-    "upper half": lambda image: {"height": image.height // 2, "data": image.data[:image.step * (image.height // 2)]},
-    "position": lambda joints: {"position": [1.0e4]}, "speed": lambda joints: {"velocity": [1.0e4]}}
-
-
-def altered(message, how):
-    result = copy.deepcopy(message)
-    for field, value in ALTERED[how](message).items():
-        setattr(result, field, value)
-    return result
-
-
-def shifted(message, seconds):
-    result = copy.deepcopy(message)
-    result.header.stamp += rospy.Duration(seconds)
-    return result
-
-
-def late(message):
-    time.sleep(1.0)
-    return [message]
-
-
-# messages: function that returns the messages to relay in place of a message, from the message, its predecessor and the
-# last word of the fault. lasts: time during which messages are changed [s]; 0: one message. topic: changed topic; None:
-# the second word of the fault.
-Change = collections.namedtuple("Change", "messages lasts topic")
-CHANGES = {
-    "drop": Change(lambda message, before, how: [], 0, None),
-    "double": Change(lambda message, before, how: [message, message], 0, None),
-    "late": Change(lambda message, before, how: late(message), 0, None),
-    "repeat": Change(lambda message, before, how: [before, message], 0, None),
-    "alter": Change(lambda message, before, how: [altered(message, how)], 0, None),
-    "mute": Change(lambda message, before, how: [], float("inf"), None),
-    # Faults on a robot.
-    "future": Change(lambda message, before, how: [shifted(message, 3600.0)], 0, None),  # no further image follows
-    "set": Change(lambda message, before, how: [shifted(message, 3600.0 if how == "forward" else -3600.0)], 1.5, "image"),
-    "resize": Change(lambda message, before, how: [altered(message, "upper half")], float("inf"), None),
-    "age": Change(lambda message, before, how: [shifted(message, -2.0)], 1.5, None),
-    "exceed": Change(lambda message, before, how: [altered(message, how)], 0, "joints")}
 
 
 class Motor:

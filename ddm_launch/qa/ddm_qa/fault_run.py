@@ -6,7 +6,6 @@ import json
 import os
 import re
 import shutil
-import struct
 import subprocess
 import traceback
 
@@ -16,6 +15,7 @@ from ddm_launch.command import Failure
 from ddm_launch.run_folder import is_finished
 from ddm_model.plain_file import write_file
 from ddm_qa.fault_cases import AT_REST, FAULTS_OF_ROOT, ON_A_ROBOT, REAL_TIME
+from ddm_qa.fault_damage import damage, write
 from ddm_qa.processes import start_roslaunch
 from ddm_qa.run_comparison import (differences, digest, digests, digests_of_finished, expected_files, lost_files, read_bytes,
                                    read_rows)
@@ -42,48 +42,7 @@ CRASH = re.compile(r"exit code -(?!2\b|9\b|15\b)\d+|Traceback|terminate called|S
 DISK_BYTES = 2 * 1024 * 1024
 COMPARED = [name for name in expected_files(TRIALS) if not name.endswith((".bag", "config.yaml"))]
 FEWEST_PAIRS = 5  # smallest number of pairs of image and torque in a bag that allows a verdict
-# Types of records in a bag: field `op` of their headers.
-RECORDS = {"header": 3, "index": 4, "chunk": 5, "chunk_info": 6, "connection": 7}
-VERSION_LINE = b"#ROSBAG V2.0\n"
 BAG, UNFINISHED = "new.bag", {"unfinished bag": "new.bag.active", "unfinished trial": "trial_001/trial.bag.active"}
-
-
-def write(path, content):
-    os.makedirs(os.path.dirname(path), exist_ok=True)
-    with open(path, "wb") as stream:
-        stream.write(content)
-
-
-def find_place(data, name):
-    """(begin, end) of a place in a file: its head, its end, its last digit, or the first record of a type in a bag."""
-    digit = data.rfind(b",") - 1  # last digit before the last column, which is text
-    places = {"": (0, len(data)), "head": (0, 8), "end": (len(data) - 16, len(data)), "digit": (digit, digit + 1),
-              "version": (0, len(VERSION_LINE))}
-    begin = len(VERSION_LINE)
-    while name not in places:
-        header_size, = struct.unpack_from("<I", data, begin)
-        header = data[begin + 4:begin + 4 + header_size]
-        data_size, = struct.unpack_from("<I", data, begin + 4 + header_size)
-        end = begin + 8 + header_size + data_size
-        if b"op=" + bytes([RECORDS[name]]) in header:
-            return begin, end
-        begin = end
-    return places[name]
-
-
-def damage(fault, path):
-    """Damages a file. fault: `cut|flip|remove [PLACE of] FILE`."""
-    verb, *place = fault.split()[:-1]
-    place = place[0] if place else ""
-    data = read_bytes(path)
-    middle = sum(find_place(data, place)) // 2
-    if verb == "remove":
-        os.remove(path)
-    elif verb == "cut":
-        write(path, data[:middle])
-    else:
-        bit = 0x01 if place == "digit" else 0x80  # 0x01 turns a digit into another digit
-        write(path, data[:middle] + bytes([data[middle] ^ bit]) + data[middle + 1:])
 
 
 @contextlib.contextmanager
