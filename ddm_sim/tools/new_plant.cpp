@@ -162,11 +162,6 @@ std::string plantText(const std::string& model, const std::string& plant_file,
   write("camera_look_at", list(options.look.look_at), "The point in the middle of the image");
   write("supersampling", std::to_string(options.look.supersampling),
         "Images are drawn so many times larger, then averaged, so that edges are soft");
-  if (proposal.feature_dim > 2) {
-    out << "\n"
-        << comment("Two features for a joint that turns far, one for another one.", "")
-        << "model:\n  feature_dim: " << proposal.feature_dim << "\n";
-  }
   return out.str();
 }
 

@@ -275,15 +275,11 @@ class Proposer {
   void proposeSuccess() {
     Texts slides;
     double shortest = 1e300;
-    out_.feature_dim = 0;
     for (const ModelJoint& joint : out_.joints) {
-      if (!joint.isHinge()) {
-        slides.push_back(joint.name);
-        shortest = std::min(shortest, joint.shown_upper - joint.shown_lower);
-      }
-      out_.feature_dim += joint.turnsFar() ? 2 : 1;
+      if (joint.isHinge()) continue;
+      slides.push_back(joint.name);
+      shortest = std::min(shortest, joint.shown_upper - joint.shown_lower);
     }
-    out_.feature_dim = std::max(2, out_.feature_dim);
     const bool has_hinges = slides.size() < out_.joints.size();
     out_.options.tolerance = has_hinges ? 10.0 : rounded(0.05 * shortest);
     if (has_hinges && !slides.empty()) {

@@ -30,12 +30,10 @@ struct ModelJoint {
 
   bool isHinge() const { return kind == JointKind::kAngle; }
   bool shownInPart() const { return limited && (shown_lower > lower || shown_upper < upper); }
-  bool turnsFar() const { return isHinge() && upper - lower > 3.2; }
 };
 
 struct PlantProposal {
   MujocoOptions options;
-  int feature_dim = 2;  ///< proposed model/feature_dim
   std::vector<ModelJoint> joints;
   std::vector<std::string> motors;  ///< joints that have a motor, also through the file's actuators
   /// For each key of the block `plant`: why the key has this value.
