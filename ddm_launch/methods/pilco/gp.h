@@ -167,13 +167,12 @@ struct GpLearnerState {
 /// GP replaces the full GP.
 /// @param inputs   one input per column                                                [D x n]
 /// @param targets  one target per row                                                  [n x E]
-/// @param rng      draws gp/training_points and, in the first sparse GP, the initial inducing
-///                 inputs
+/// @param rng      draws the points for the hyper-parameters and the first inducing inputs
 /// @param state    in: state after the previous trial; out: state after this trial
 /// @pre the sizes of the state fit the data (checked by eigen_assert)
 /// @throws std::invalid_argument as trainGp(); the state is then unchanged
-GpFit learnGp(const GpTrainingOptions& training, const SparseGpOptions& sparse,
-              const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets, std::mt19937_64* rng,
-              GpLearnerState* state, const std::function<void()>& on_evaluation = nullptr);
+GpFit learnGp(const PilcoOptions& options, const Eigen::MatrixXd& inputs,
+              const Eigen::MatrixXd& targets, std::mt19937_64* rng, GpLearnerState* state,
+              const std::function<void()>& on_evaluation = nullptr);
 
 }  // namespace ddm::pilco

@@ -1,4 +1,4 @@
-// Parameters of PILCO. One struct is one YAML block; pilco.yaml explains the parameters.
+// Parameters of PILCO, which pilco.yaml explains.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -9,89 +9,36 @@
 
 namespace ddm::pilco {
 
-/// Block `pilco`: horizon of the predictions and size of the policy.
+/// Block `pilco`. No other method reads it.
 struct PilcoOptions {
-  int horizon = 125;     ///< H, predicted steps [-]
-  int num_centres = 30;  ///< centres of the RBF policy [-]
+  int hyperparameter_iterations = 300;  ///< limit on the BFGS iterations for each output [-]
+  int hyperparameter_points = 0;  ///< size of a random subset to learn them from; 0: all data [-]
+  int max_points = 300;           ///< largest full GP, and number of inducing inputs [-]
+  int first_inducing_iterations = 1500;  ///< L-BFGS iterations on the first inducing inputs [-]
+  int inducing_iterations = 500;         ///< L-BFGS iterations on inducing inputs later [-]
+  int policy_evaluations = 1500;  ///< limit on the evaluations of J and gradient in each trial [-]
 
   template <class Visitor>
   void visit(Visitor& visitor) {
-    visitor("horizon", horizon);
-    visitor("num_centres", num_centres);
+    visitor("hyperparameter_iterations", hyperparameter_iterations);
+    visitor("hyperparameter_points", hyperparameter_points);
+    visitor("max_points", max_points);
+    visitor("first_inducing_iterations", first_inducing_iterations);
+    visitor("inducing_iterations", inducing_iterations);
+    visitor("policy_evaluations", policy_evaluations);
   }
   /// All problems with these values, in words a user can act on. Empty if the values are valid.
   std::vector<std::string> problems() const {
-    OptionChecks pilco("pilco");
-    pilco.requireWithin("horizon", horizon, 1, 100000);
-    pilco.requireWithin("num_centres", num_centres, 1, 1000);
-    return pilco.problems();
+    OptionChecks checks("pilco");
+    checks.requireWithin("hyperparameter_iterations", hyperparameter_iterations, 0, 1000000);
+    checks.require(hyperparameter_points == 0 || hyperparameter_points >= 2,
+                   "hyperparameter_points", "be 0 or >= 2", hyperparameter_points);
+    checks.requireAtLeast("max_points", max_points, 1);
+    checks.requireWithin("first_inducing_iterations", first_inducing_iterations, 0, 1000000);
+    checks.requireWithin("inducing_iterations", inducing_iterations, 0, 1000000);
+    checks.requireAtLeast("policy_evaluations", policy_evaluations, 1);
+    return checks.problems();
   }
-};
-
-/// Block `gp`: training of the GPs, one GP for each output.
-struct GpTrainingOptions {
-  int max_iterations = 300;  ///< limit on the BFGS iterations for each output [-]
-  int training_points = 0;   ///< size of a random subset for the hyper-parameters; 0: all data [-]
-
-  template <class Visitor>
-  void visit(Visitor& visitor) {
-    visitor("max_iterations", max_iterations);
-    visitor("training_points", training_points);
-  }
-  std::vector<std::string> problems() const {
-    OptionChecks gp("gp");
-    gp.requireWithin("max_iterations", max_iterations, 0, 1000000);
-    gp.require(training_points == 0 || training_points >= 2, "training_points", "be 0 or >= 2",
-               training_points);
-    return gp.problems();
-  }
-};
-
-/// Block `sparse_gp`: the sparse GP that replaces the full GP for large data.
-struct SparseGpOptions {
-  int max_points = 300;         ///< largest full GP, and number of inducing inputs [-]
-  int first_iterations = 1500;  ///< limit on the first L-BFGS training of the inducing inputs [-]
-  int max_iterations = 500;     ///< limit on the L-BFGS training of the inducing inputs later [-]
-
-  template <class Visitor>
-  void visit(Visitor& visitor) {
-    visitor("max_points", max_points);
-    visitor("first_iterations", first_iterations);
-    visitor("max_iterations", max_iterations);
-  }
-  std::vector<std::string> problems() const {
-    OptionChecks sparse_gp("sparse_gp");
-    sparse_gp.requireAtLeast("max_points", max_points, 1);
-    sparse_gp.requireWithin("first_iterations", first_iterations, 0, 1000000);
-    sparse_gp.requireWithin("max_iterations", max_iterations, 0, 1000000);
-    return sparse_gp.problems();
-  }
-};
-
-/// Block `policy_search`: optimisation of the policy.
-struct PolicySearchOptions {
-  int max_iterations = 75;     ///< limit on the line searches of BFGS in each trial [-]
-  int max_evaluations = 1500;  ///< limit on the evaluations of cost and gradient in each trial [-]
-
-  template <class Visitor>
-  void visit(Visitor& visitor) {
-    visitor("max_iterations", max_iterations);
-    visitor("max_evaluations", max_evaluations);
-  }
-  std::vector<std::string> problems() const {
-    OptionChecks search("policy_search");
-    search.requireAtLeast("max_iterations", max_iterations, 0);
-    search.requireAtLeast("max_evaluations", max_evaluations, 1);
-    return search.problems();
-  }
-};
-
-/// All blocks of PILCO. No other method reads them.
-struct PilcoConfig {
-  PilcoOptions pilco;
-  GpTrainingOptions gp;
-  SparseGpOptions sparse_gp;
-  PolicySearchOptions policy_search;
 };
 
 }  // namespace ddm::pilco

@@ -17,7 +17,7 @@ YAML::Node matrixToYaml(const Eigen::MatrixXd& matrix) {
   if (!matrix.allFinite()) {
     throw std::runtime_error(
         "PILCO: the policy or the GPs that were found are not finite: check the bags, or lower "
-        "policy_search/max_iterations or gp/max_iterations");
+        "pilco/policy_evaluations or pilco/hyperparameter_iterations");
   }
   return valueToYaml(std::vector<double>(matrix.data(), matrix.data() + matrix.size()));
 }

@@ -30,6 +30,9 @@ using Clock = std::chrono::steady_clock;
 
 constexpr char kMemoryFile[] = "pilco.yaml";
 constexpr double kDynamicsShare = 0.2;  // share of the GP training in the progress bar
+// Values of the published experiments.
+constexpr int kNumCentres = 30;    // basis functions of the RBF policy
+constexpr int kLineSearches = 75;  // limit on the iterations of each policy search
 
 double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -57,7 +60,7 @@ std::pair<Eigen::MatrixXd, Eigen::MatrixXd> transitions(const DataSet& data,
 /// are those of the task.
 /// @param features  features of the task's state
 Eigen::VectorXd drawFirstPolicy(const PilcoTask& task, const pilco::Augmentation& features,
-                                int num_centres, int torque_dim, std::mt19937_64* rng) {
+                                int torque_dim, std::mt19937_64* rng) {
   constexpr double kTargetStd = 0.1;  // value of the published experiments
   const auto drawNormal = [rng](Eigen::Index rows, Eigen::Index cols) {
     std::normal_distribution<double> normal;
@@ -72,8 +75,8 @@ Eigen::VectorXd drawFirstPolicy(const PilcoTask& task, const pilco::Augmentation
   const Eigen::MatrixXd root =
       solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
   const Eigen::MatrixXd centres =
-      (root * drawNormal(start.mean.size(), num_centres)).colwise() + start.mean;
-  const Eigen::MatrixXd targets = kTargetStd * drawNormal(num_centres, torque_dim);
+      (root * drawNormal(start.mean.size(), kNumCentres)).colwise() + start.mean;
+  const Eigen::MatrixXd targets = kTargetStd * drawNormal(kNumCentres, torque_dim);
   const Eigen::MatrixXd log_length_scales =
       task.policy_length_scales.array().log().matrix().replicate(1, torque_dim);
   return pilco::RbfPolicy::packParameters(log_length_scales, centres, targets);
@@ -135,22 +138,6 @@ class PilcoPolicy : public Policy {
   Eigen::VectorXd x_;
 };
 
-pilco::PilcoConfig readConfig(ParamReader* reader) {
-  return {reader->read<pilco::PilcoOptions>("pilco"), reader->read<pilco::GpTrainingOptions>("gp"),
-          reader->read<pilco::SparseGpOptions>("sparse_gp"),
-          reader->read<pilco::PolicySearchOptions>("policy_search")};
-}
-
-YAML::Node readBlocks(ParamReader* reader) {
-  const pilco::PilcoConfig config = readConfig(reader);
-  YAML::Node out;
-  out["pilco"] = toYaml(config.pilco);
-  out["gp"] = toYaml(config.gp);
-  out["sparse_gp"] = toYaml(config.sparse_gp);
-  out["policy_search"] = toYaml(config.policy_search);
-  return out;
-}
-
 /// Inputs and statistics of one training.
 struct Training {
   pilco::Memory memory;
@@ -161,7 +148,7 @@ struct Training {
 
 class PilcoMethod : public Method {
  public:
-  PilcoMethod(const Configuration& configuration, const pilco::PilcoConfig& options,
+  PilcoMethod(const Configuration& configuration, const pilco::PilcoOptions& options,
               std::unique_ptr<Observation> observation)
       : configuration_(configuration),
         options_(options),
@@ -221,7 +208,7 @@ class PilcoMethod : public Method {
   void makePolicy(const ObservedData& observed, int torque_dim) {
     features_ = pilco::replaceAngles(static_cast<int>(observed.X.rows()), observed.task.angles);
     policy_ = std::make_shared<pilco::RbfPolicy>(
-        features_->outputDim(), options_.pilco.num_centres,
+        features_->outputDim(), kNumCentres,
         perMotor(configuration_.mpc.max_torque, torque_dim, "mpc/max_torque"));
   }
 
@@ -231,14 +218,15 @@ class PilcoMethod : public Method {
     const auto [inputs, targets] = transitions(data, observed.X, *features_);
     int evaluations = 0;
     const auto count = [&] {
-      const double most = static_cast<double>(observed.X.rows()) * options_.gp.max_iterations;
+      const double most =
+          static_cast<double>(observed.X.rows()) * options_.hyperparameter_iterations;
       training->progress(kDynamicsShare * std::min(1.0, ++evaluations / most));
     };
-    const pilco::GpFit fit = pilco::learnGp(options_.gp, options_.sparse_gp, inputs, targets,
-                                            &training->rng, &training->memory.gps, count);
+    const pilco::GpFit fit =
+        pilco::learnGp(options_, inputs, targets, &training->rng, &training->memory.gps, count);
     if (!fit.ok()) throw std::runtime_error("PILCO: the GPs could not be trained: " + fit.message);
     training->report["points"] = static_cast<int>(inputs.cols());
-    training->report["sparse"] = inputs.cols() > options_.sparse_gp.max_points;
+    training->report["sparse"] = inputs.cols() > options_.max_points;
     training->report["gp_s"] = valueToYaml(secondsSince(start));
     training->report["gp_message"] = fit.message;
     return pilco::Propagation(fit.model, observed.task.angles, observed.task.noisy);
@@ -253,17 +241,16 @@ class PilcoMethod : public Method {
                                     Training* training) {
     const Clock::time_point start = Clock::now();
     const auto drawStart = [&] {
-      return drawFirstPolicy(task, *features_, options_.pilco.num_centres, policy_->outputDim(),
-                             &training->rng);
+      return drawFirstPolicy(task, *features_, policy_->outputDim(), &training->rng);
     };
     Eigen::VectorXd& parameters = training->memory.policy;
     if (parameters.size() == 0) parameters = drawStart();
     pilco::LongTermCost cost(std::move(dynamics), task.cost, policy_.get(), task.start,
-                             options_.pilco.horizon);
+                             /*horizon=*/configuration_.trial.num_steps);
     int evaluations = 0;
     MinimiseOptions solver;
-    solver.max_iterations = options_.policy_search.max_iterations;
-    solver.max_evaluations = options_.policy_search.max_evaluations;
+    solver.max_iterations = kLineSearches;
+    solver.max_evaluations = options_.policy_evaluations;
     solver.function_tolerance = 1e-8;
     const auto search = [&] {
       // The cost is not finite if a predicted distribution grows without bound. The line search then
@@ -271,7 +258,7 @@ class PilcoMethod : public Method {
       return minimise(
           [&](const Eigen::VectorXd& p, Eigen::VectorXd* gradient) {
             // A line search takes about two evaluations.
-            const double done = ++evaluations / (2.0 * options_.policy_search.max_iterations + 1.0);
+            const double done = ++evaluations / (2.0 * kLineSearches + 1.0);
             training->progress(kDynamicsShare + (1.0 - kDynamicsShare) * std::min(done, 1.0));
             return cost.evaluate(p, gradient);
           },
@@ -302,7 +289,7 @@ class PilcoMethod : public Method {
   }
 
   const Configuration& configuration_;
-  pilco::PilcoConfig options_;
+  pilco::PilcoOptions options_;
   std::shared_ptr<Observation> observation_;
   BagCache bags_;
   std::optional<pilco::Augmentation> features_;  // maps x to the input of the policy
@@ -311,6 +298,11 @@ class PilcoMethod : public Method {
 
 MethodKind pilcoKind(const std::string& name, const std::string& about,
                      std::unique_ptr<Observation> (*observe)(const Configuration&, const Plant&)) {
+  const auto read_blocks = [](ParamReader* reader) {
+    YAML::Node out;
+    out["pilco"] = toYaml(reader->read<pilco::PilcoOptions>("pilco"));
+    return out;
+  };
   const auto make = [observe](const Configuration& all, const Plant& plant) {
     pilco::require(
         !(all.camera.drop_rate > 0.0),
@@ -318,16 +310,15 @@ MethodKind pilcoKind(const std::string& name, const std::string& about,
         "a gap for a trial, got ",
         all.camera.drop_rate);
     ParamReader reader(all.method_blocks);
-    const pilco::PilcoConfig config = readConfig(&reader);
-    return makePilcoMethod(all, config, observe(all, plant));
+    return makePilcoMethod(all, reader.read<pilco::PilcoOptions>("pilco"), observe(all, plant));
   };
-  return {name, "PILCO on " + about, readBlocks, make};
+  return {name, "PILCO on " + about, read_blocks, make};
 }
 
 }  // namespace
 
 std::unique_ptr<Method> makePilcoMethod(const Configuration& configuration,
-                                        const pilco::PilcoConfig& options,
+                                        const pilco::PilcoOptions& options,
                                         std::unique_ptr<Observation> observation) {
   return std::make_unique<PilcoMethod>(configuration, options, std::move(observation));
 }

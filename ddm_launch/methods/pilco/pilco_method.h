@@ -117,7 +117,7 @@ PilcoTask imageTask(const Eigen::MatrixXd& X, const std::vector<Segment>& segmen
 /// GPs, so that no training is repeated. It throws std::runtime_error if a file is damaged.
 /// @param configuration  must outlive the method
 std::unique_ptr<Method> makePilcoMethod(const Configuration& configuration,
-                                        const pilco::PilcoConfig& options,
+                                        const pilco::PilcoOptions& options,
                                         std::unique_ptr<Observation> observation);
 
 }  // namespace ddm

@@ -180,14 +180,14 @@ GpFit trainSparseGp(const Eigen::MatrixXd& start, const Eigen::MatrixXd& inputs,
   return fit;
 }
 
-GpFit learnGp(const GpTrainingOptions& training, const SparseGpOptions& sparse,
-              const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets, std::mt19937_64* rng,
-              GpLearnerState* state, const std::function<void()>& on_evaluation) {
+GpFit learnGp(const PilcoOptions& options, const Eigen::MatrixXd& inputs,
+              const Eigen::MatrixXd& targets, std::mt19937_64* rng, GpLearnerState* state,
+              const std::function<void()>& on_evaluation) {
   eigen_assert(state->hyperparameters.size() == 0 ||
                (state->hyperparameters.rows() == inputs.rows() + 2 &&
                 state->hyperparameters.cols() == targets.cols()));
-  const bool use_sparse = inputs.cols() > sparse.max_points;
-  const int count = training.training_points;
+  const bool use_sparse = inputs.cols() > options.max_points;
+  const int count = options.hyperparameter_points;
   const bool use_subset = count > 0 && inputs.cols() > count;
   Eigen::MatrixXd X = inputs, Y = targets;  // from which the hyper-parameters are learned
   if (use_subset) {
@@ -195,7 +195,8 @@ GpFit learnGp(const GpTrainingOptions& training, const SparseGpOptions& sparse,
     X = columnsOf(inputs, drawn);
     Y = columnsOf(targets.transpose(), drawn).transpose();
   }
-  GpFit fit = trainGp(X, Y, training.max_iterations, state->hyperparameters, on_evaluation);
+  GpFit fit =
+      trainGp(X, Y, options.hyperparameter_iterations, state->hyperparameters, on_evaluation);
   if (!fit.ok()) return fit;
   state->hyperparameters = fit.model.hyperparameters;
   if (!use_sparse) {
@@ -205,10 +206,11 @@ GpFit learnGp(const GpTrainingOptions& training, const SparseGpOptions& sparse,
 
   const bool first = state->inducing.size() == 0;
   const Eigen::MatrixXd start =
-      first ? columnsOf(inputs, randomIndices(inputs.cols(), sparse.max_points, rng))
+      first ? columnsOf(inputs, randomIndices(inputs.cols(), options.max_points, rng))
             : state->inducing;
   fit.add(trainSparseGp(start, inputs, targets, state->hyperparameters,
-                        first ? sparse.first_iterations : sparse.max_iterations, on_evaluation));
+                        first ? options.first_inducing_iterations : options.inducing_iterations,
+                        on_evaluation));
   if (fit.ok()) state->inducing = fit.model.inputs;
   return fit;
 }

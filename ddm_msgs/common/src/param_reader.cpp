@@ -15,9 +15,8 @@ namespace {
 /// All blocks of the parameter references in config/ of all packages. A program ignores the blocks
 /// that it does not read, so that all programs can use the same files.
 const std::set<std::string> kBlocks = {
-    "plant",    "camera",     "sim",           "show",       "robot", "image", "model",
-    "training", "data_set",   "mpc",           "controller", "pilco", "gp",    "sparse_gp",
-    "trial",    "experiment", "policy_search", "evaluation", "start"};
+    "plant",    "camera", "sim",        "show",  "robot", "image",      "model",      "training",
+    "data_set", "mpc",    "controller", "pilco", "trial", "experiment", "evaluation", "start"};
 
 /// Further keys of a saved configuration: the version and renderer that produced it, and the
 /// success criterion.

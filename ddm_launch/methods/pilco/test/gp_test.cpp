@@ -255,14 +255,13 @@ TEST(TrainSparseGp, ImprovesOnTheRandomSubset) {
 
 TEST(LearnGp, UsesInducingInputsOnlyBeyondTheSetSize) {
   const SparseToy toy(40);
-  SparseGpOptions sparse;
-  sparse.max_points = 10;
-  sparse.first_iterations = 20;
+  PilcoOptions options;
+  options.max_points = 10;
+  options.first_inducing_iterations = 20;
   GpLearnerState state;
   std::mt19937_64 rng(1);
   const auto learn = [&](int n) {
-    return learnGp(GpTrainingOptions(), sparse, toy.inputs.leftCols(n), toy.targets.topRows(n),
-                   &rng, &state);
+    return learnGp(options, toy.inputs.leftCols(n), toy.targets.topRows(n), &rng, &state);
   };
   const GpFit full = learn(10);
   ASSERT_TRUE(full.ok()) << full.message;
@@ -286,15 +285,14 @@ TEST(LearnGp, UsesInducingInputsOnlyBeyondTheSetSize) {
 
 TEST(LearnGp, LearnsHyperparametersFromSomePointsAndPredictsWithAll) {
   const SparseToy toy(60);
-  GpTrainingOptions training;
-  training.training_points = 40;
-  SparseGpOptions sparse;
-  sparse.first_iterations = 5;
+  PilcoOptions options;
+  options.hyperparameter_points = 40;
+  options.first_inducing_iterations = 5;
   const auto learn = [&](int max_points) {
-    sparse.max_points = max_points;
+    options.max_points = max_points;
     GpLearnerState state;
     std::mt19937_64 rng(1);
-    return learnGp(training, sparse, toy.inputs, toy.targets, &rng, &state);
+    return learnGp(options, toy.inputs, toy.targets, &rng, &state);
   };
   const GpFit full = learn(100);
   ASSERT_TRUE(full.ok()) << full.message;

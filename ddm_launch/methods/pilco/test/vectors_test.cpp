@@ -212,7 +212,7 @@ GpFit trainFromStart(const Case& reference) {
   const Eigen::MatrixXd inputs = reference.matrix("X").transpose(), targets = reference.matrix("Y");
   const Hyperparameters start = reference.matrix("loghyp_init");
   reference.compare("loghyp_init", initialHyperparameters(inputs, targets), absolute(1e-9));
-  GpFit fit = trainGp(inputs, targets, GpTrainingOptions().max_iterations, start);
+  GpFit fit = trainGp(inputs, targets, PilcoOptions().hyperparameter_iterations, start);
   usable(fit);
   return fit;
 }
