@@ -1,6 +1,6 @@
 // read_bags: writes the samples of bags as training reads them, for programs in Python.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <ddm_bag_io/bag_cache.h>
+#include <ddm_bag_io/bag_reader.h>
 #include <ddm_common/param_reader.h>
 #include <ddm_common/param_value.h>
 #include <ddm_common/plain_file.h>

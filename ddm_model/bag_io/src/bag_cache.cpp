@@ -2,14 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_bag_io/bag_cache.h"
 
-#include <sys/stat.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <stdexcept>
 #include <system_error>
-
-#include "bag_texts.h"
 
 namespace ddm {
 
@@ -56,30 +52,6 @@ DataSet BagCache::read(const std::vector<std::string>& paths, const KeepGoing& k
     data.append(content.data);
   }
   return data;
-}
-
-void DifferentBags::require(const std::string& path, const BagContent& content) {
-  constexpr char kRemedy[] = ": it would count twice, so leave one of them out";
-  struct stat status {};
-  if (::stat(path.c_str(), &status) == 0) {
-    const auto added = files_.emplace(std::make_pair(status.st_dev, status.st_ino), path);
-    const std::string& before = added.first->second;
-    if (!added.second) {
-      refuseBag("bag ", path, " is given twice", before == path ? "" : ", also as " + before,
-                kRemedy);
-    }
-  }
-  std::map<std::string, std::size_t> shared;  // number of samples in both, by path of the other bag
-  for (const std::size_t id : content.frame_ids) {
-    const auto added = frames_.emplace(id, path);
-    if (!added.second && added.first->second != path) ++shared[added.first->second];
-  }
-  const std::size_t all = content.frame_ids.size();
-  for (const auto& [other, number] : shared) {
-    if (10 * number <= all) continue;
-    refuseBag("bag ", path, ": ", number, " of its ", all, " frames are also in bag ", other,
-              ", with the same times", kRemedy, ", or split the recording without an overlap");
-  }
 }
 
 }  // namespace ddm

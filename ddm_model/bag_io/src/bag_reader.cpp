@@ -8,9 +8,9 @@
 #include <ddm_common/plain_file.h>
 #include <ddm_common/yaml_text.h>
 #include <sensor_msgs/CompressedImage.h>
+#include <sys/stat.h>
 
 #include <algorithm>
-#include <boost/algorithm/string/join.hpp>
 #include <boost/algorithm/string/predicate.hpp>
 #include <cerrno>
 #include <cstring>
@@ -18,219 +18,17 @@
 #include <fstream>
 #include <functional>
 #include <map>
-#include <optional>
-#include <set>
-#include <string_view>
 #include <utility>
 
 #include "bag_file.h"
 #include "bag_texts.h"
+#include "bag_topics.h"
 #include "pairing.h"
-#include "torque_reader.h"
 
 namespace ddm {
 namespace {
 
-using boost::algorithm::ends_with;
-using Names = std::vector<std::string>;
-
 constexpr int kFewGreyValues = 64;  // of 256; a 14 bit image in a 16 bit message has so few
-const Names kImages = {"sensor_msgs/Image", "sensor_msgs/CompressedImage"};
-
-/// A topic of a bag. An empty name means that there is none.
-struct Topic {
-  std::string name;
-  std::string type;
-};
-
-/// The topics that the reader uses.
-struct BagTopics {
-  Topic images, torques;
-  Topic goal;  ///< may be missing
-};
-
-/// @return "/torque" for "torque"
-std::string absolute(const std::string& topic) {
-  return !topic.empty() && topic.front() == '/' ? topic : "/" + topic;
-}
-
-/// Whether images on the topic are sensor_msgs/Image, not CompressedImage.
-bool isRaw(const BagConnection& connection) { return connection.type == kImages.front(); }
-
-/// @param key  option that gives the name
-/// @return     topic with an empty name if there is none
-Topic findTopic(const BagFile& bag, const std::string& name, const Names& types,
-                const std::string& key) {
-  using Found = std::map<std::string, std::map<std::string, std::string>>;
-  // Type, by base (topic without transport) and by topic.
-  Found exact, in_namespace;
-  for (const auto& entry : bag.connections()) {
-    const BagConnection& connection = entry.second;
-    const std::string topic = absolute(connection.topic);
-    Names bases = {topic};
-    if (&types == &kImages && !isRaw(connection)) {  // "/camera/image_raw" for ".../compressed"
-      bases.push_back(absolute(topic.substr(0, topic.rfind('/'))));
-    }
-    for (const std::string& base : bases) {
-      const bool is_exact = base == absolute(name);
-      if (!is_exact && !ends_with(base, absolute(name))) continue;
-      std::string& type = (is_exact ? exact : in_namespace)[base][connection.topic];
-      if (!type.empty() && type != connection.type) {
-        refuseBag("topic ", connection.topic, " has messages of ", type, " and ", connection.type,
-                  ": leave this bag out");
-      }
-      type = connection.type;
-    }
-  }
-  const Found& found = exact.empty() ? in_namespace : exact;
-  if (found.empty()) return {};
-  const auto& [base, topics] = *found.begin();
-  if (found.size() > 1) {
-    refuseBag("topics ", topics.begin()->first, " and ", found.rbegin()->second.begin()->first,
-              " both match: set data_set/", key, " to one of them");
-  }
-  for (const auto& [topic, type] : topics) {  // a raw topic comes first
-    const bool known = absolute(topic) == base || ends_with(topic, "/compressed");
-    if (known && std::find(types.begin(), types.end(), type) != types.end()) return {topic, type};
-  }
-  refuseBag("topic ", topics.begin()->first, " has type ", topics.begin()->second, ", it must be ",
-            boost::algorithm::join(types, " or "),
-            &types == &kImages ? " of the transport raw or compressed: record that, convert the "
-                                 "images with `rosrun image_transport republish`"
-                               : ": record that",
-            ", or set data_set/", key);
-}
-
-Topic requireTopic(const BagFile& bag, const std::string& name, const Names& types,
-                   const std::string& key) {
-  Topic topic = findTopic(bag, name, types, key);
-  if (!topic.name.empty()) return topic;
-  std::set<std::string> topics;
-  for (const auto& entry : bag.connections()) {
-    topics.insert(entry.second.topic + " (" + entry.second.type + ")");
-  }
-  refuseBag("no topic ", name,
-            " (it holds: ", topics.empty() ? "nothing" : boost::algorithm::join(topics, ", "),
-            "): record it, or set data_set/", key);
-}
-
-/// Messages of a topic by one publisher.
-struct Published {
-  ros::Time first, last;
-  std::size_t number = 0;
-
-  void add(const ros::Time& time) {
-    first = number == 0 ? time : std::min(first, time);
-    last = std::max(last, time);
-    ++number;
-  }
-};
-using Publishers = std::map<std::string, Published>;  // by name of the node
-
-/// Checks that no two publishers published at the same time. Adds a note if several published, one
-/// after the other. Ignores publishers without a name, which rosbag omits in some latched messages.
-/// @param what    beginning of the message, before the publishers
-/// @param remedy  remedy for two publishers at the same time
-/// @throws std::runtime_error if two published at the same time
-void requireOneAtATime(Publishers publishers, const std::string& what, const std::string& remedy,
-                       Names* notes) {
-  publishers.erase("");
-  if (publishers.size() < 2) return;
-  std::vector<std::pair<std::string, Published>> in_order(publishers.begin(), publishers.end());
-  std::stable_sort(in_order.begin(), in_order.end(),
-                   [](const auto& a, const auto& b) { return a.second.first < b.second.first; });
-  bool overlap = false;
-  ros::Time last;  // of the publishers so far
-  Names texts;
-  for (const auto& [name, published] : in_order) {
-    texts.push_back(textOf(name, " (", published.number, " from ", timeText(published.first),
-                           " to ", timeText(published.last), ")"));
-    overlap = overlap || (texts.size() > 1 && published.first <= last);
-    last = published.last;
-  }
-  const std::string text = what + boost::algorithm::join(texts, " and ");
-  if (overlap) refuseBag(text, ": ", remedy);
-  notes->push_back(text + ", one after the other: all of them count");
-}
-
-/// Reads the times of an image, and hashes its content without the header.
-BagImage bagImageOf(const BagMessage& message, std::size_t number) {
-  MessageBytes bytes(message.bytes.data(), message.bytes.size());
-  std_msgs::Header header;
-  try {
-    bytes.next(header);
-  } catch (const std::exception& e) {
-    refuseMessage(message, e);
-  }
-  const std::string_view content = message.bytes.substr(message.bytes.size() - bytes.left());
-  return {header.stamp, message.recorded, number, std::hash<std::string_view>()(content)};
-}
-
-/// Finds the topics that the options name: exactly, or else in some namespace. An image topic may
-/// also be a compressed form.
-/// @throws std::runtime_error that names the key and the remedy. Faults: there is no such topic, or
-///         several; the type or the image transport cannot be read; a topic has two roles; torques
-///         do not name their images, and dt is 0
-BagTopics findTopics(const BagFile& bag, const BagOptions& options) {
-  BagTopics topics;
-  topics.images = requireTopic(bag, options.image_topic, kImages, "image_topic");
-  topics.torques = requireTopic(bag, options.torque_topic, torqueTypes(), "torque_topic");
-  topics.goal = findTopic(bag, options.goal_topic, kImages, "goal_topic");
-  if (!answersImages(topics.torques.type) && options.dt == 0.0) {
-    refuseBag(
-        "topic ", topics.torques.name, " has type ", topics.torques.type,
-        ", which does not say which image it answers: set data_set/dt, the time between frames "
-        "[s]");
-  }
-  if (topics.goal.name == topics.images.name) {
-    refuseBag(
-        "topic ", topics.goal.name,
-        " is meant by data_set/image_topic and data_set/goal_topic: set one of them to another "
-        "topic");
-  }
-  return topics;
-}
-
-/// Reads the times of all images and torques, and pairs them. Pixels are not decoded, since many
-/// images of a fast camera belong to no sample.
-/// @throws std::runtime_error like findTopics() and pairUp(); also if there is no torque, or if two
-///         nodes publish torques or images at the same time
-Pairs readPairs(BagFile* bag, const BagTopics& topics, const BagOptions& options) {
-  TorqueReader reader(options.motors);
-  Publishers controllers, cameras;
-  std::vector<BagImage> images;
-  std::vector<BagTorque> torques;
-  bag->forEachMessage({topics.images.name, topics.torques.name}, [&](const BagMessage& message) {
-    if (message.connection.topic == topics.images.name) {
-      cameras[message.connection.publisher].add(message.recorded);
-      images.push_back(bagImageOf(message, images.size()));
-    } else if (const std::optional<BagTorque> torque = reader.read(message)) {
-      controllers[message.connection.publisher].add(message.recorded);
-      torques.push_back(*torque);
-    }
-  });
-  const std::string& topic = topics.torques.name;
-  const std::string unknown = reader.withoutEffort();
-  if (torques.empty()) {
-    const std::string motors = boost::algorithm::join(options.motors, " and ");
-    refuseBag("topic ", topic, " has no torque", motors.empty() ? "" : " of " + motors,
-              unknown.empty() ? "" : " (" + unknown + " have no effort or number of them)",
-              ": leave this bag out, or set data_set/torque_topic and motors");
-  }
-  Names notes;
-  if (!unknown.empty()) {
-    notes.push_back("topic " + topic + ": " + unknown +
-                    " have no effort or number of the motors and do not count");
-  }
-  requireOneAtATime(controllers, "topic " + topic + " has torques of ",
-                    "record the one that moves the motor", &notes);
-  requireOneAtATime(cameras, "topic " + topics.images.name + " has images of ",
-                    "record each camera on a topic of its own", &notes);
-  const bool by_stamp = answersImages(topics.torques.type);
-  Pairs pairs = pairUp(std::move(images), std::move(torques), by_stamp ? 0.0 : options.dt);
-  pairs.notes.insert(pairs.notes.begin(), notes.begin(), notes.end());
-  return pairs;
-}
 
 /// Parses a raw or compressed image.
 /// @param encoding  out: encoding or format as the camera sent it
@@ -414,6 +212,30 @@ BagContent readBag(const std::string& path, int image_size, const BagOptions& op
     return readBagBytes(&in, image_size, options);
   } catch (const std::exception& e) {
     refuseBag("bag ", path, ": ", e.what());
+  }
+}
+
+void DifferentBags::require(const std::string& path, const BagContent& content) {
+  constexpr char kRemedy[] = ": it would count twice, so leave one of them out";
+  struct stat status {};
+  if (::stat(path.c_str(), &status) == 0) {
+    const auto added = files_.emplace(std::make_pair(status.st_dev, status.st_ino), path);
+    const std::string& before = added.first->second;
+    if (!added.second) {
+      refuseBag("bag ", path, " is given twice", before == path ? "" : ", also as " + before,
+                kRemedy);
+    }
+  }
+  std::map<std::string, std::size_t> shared;  // number of samples in both, by path of the other bag
+  for (const std::size_t id : content.frame_ids) {
+    const auto added = frames_.emplace(id, path);
+    if (!added.second && added.first->second != path) ++shared[added.first->second];
+  }
+  const std::size_t all = content.frame_ids.size();
+  for (const auto& [other, number] : shared) {
+    if (10 * number <= all) continue;
+    refuseBag("bag ", path, ": ", number, " of its ", all, " frames are also in bag ", other,
+              ", with the same times", kRemedy, ", or split the recording without an overlap");
   }
 }
 

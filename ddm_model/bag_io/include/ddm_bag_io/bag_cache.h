@@ -10,8 +10,6 @@
 #include <map>
 #include <stdexcept>
 #include <string>
-#include <unordered_map>
-#include <utility>
 #include <vector>
 
 #include "ddm_bag_io/bag_reader.h"
@@ -55,20 +53,6 @@ class BagCache {
   BagOptions options_;
   Warn warn_;
   std::map<std::string, Entry> entries_;
-};
-
-/// Detects bags that share samples: one file under two paths, copies, or overlapping recordings.
-class DifferentBags {
- public:
-  /// Compares a bag with all bags of earlier calls.
-  /// @throws std::runtime_error if the file, or more than a tenth of its samples, occurred before
-  void require(const std::string& path, const BagContent& content);
-
- private:
-  // Path, by device and inode.
-  std::map<std::pair<std::uintmax_t, std::uintmax_t>, std::string> files_;
-  // Path of the bag, by hash of the sample.
-  std::unordered_map<std::size_t, std::string> frames_;
 };
 
 }  // namespace ddm

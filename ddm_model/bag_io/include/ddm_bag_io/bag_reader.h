@@ -7,7 +7,10 @@
 
 #include <cstdint>
 #include <istream>
+#include <map>
 #include <string>
+#include <unordered_map>
+#include <utility>
 #include <vector>
 
 namespace ddm {
@@ -90,5 +93,19 @@ BagContent readBag(const std::string& path, int image_size, const BagOptions& op
 /// Reads a bag from any stream; error messages do not name the bag.
 /// @param in  binary and seekable
 BagContent readBagBytes(std::istream* in, int image_size, const BagOptions& options);
+
+/// Detects bags that share samples: one file under two paths, copies, or overlapping recordings.
+class DifferentBags {
+ public:
+  /// Compares a bag with all bags of earlier calls.
+  /// @throws std::runtime_error if the file, or more than a tenth of its samples, occurred before
+  void require(const std::string& path, const BagContent& content);
+
+ private:
+  // Path, by device and inode.
+  std::map<std::pair<std::uintmax_t, std::uintmax_t>, std::string> files_;
+  // Path of the bag, by hash of the sample.
+  std::unordered_map<std::size_t, std::string> frames_;
+};
 
 }  // namespace ddm
