@@ -1,38 +1,14 @@
 // mpc_node: answers each camera image with a torque.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <actionlib/server/simple_action_server.h>
-#include <ddm_common/effort_publisher.h>
+#include "mpc_node.h"
+
 #include <ddm_common/image_codec.h>
-#include <ddm_common/log_thread.h>
-#include <ddm_common/run_node.h>
 #include <ddm_common/topic_peers.h>
-#include <ddm_model/ddm.h>
-#include <ddm_model/minimise.h>
 #include <ddm_model/model_file.h>
-#include <ddm_msgs/Model.h>
-#include <ddm_msgs/RunTrialAction.h>
-#include <ddm_msgs/Torque.h>
 #include <ddm_msgs/topics.h>
-#include <image_transport/image_transport.h>
-#include <ros/callback_queue.h>
-#include <ros/ros.h>
 
 #include <algorithm>
-#include <chrono>
-#include <functional>
-#include <memory>
-#include <mutex>
-#include <optional>
 #include <sstream>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include "applied_torques.h"
-#include "control_health.h"
-#include "ddm_mpc/mpc_options.h"
-#include "plan_messages.h"
-#include "trial_run.h"
 
 namespace ddm {
 namespace {
@@ -40,428 +16,332 @@ namespace {
 constexpr int kQueue = 10;
 const ros::WallDuration kPlanLogPeriod(5.0);
 const ros::WallDuration kTick(0.1);  // also the period of feedback, to limit its load
-const ros::WallDuration kLook(0.05);
 
 ros::NodeHandle withQueue(ros::NodeHandle nh, ros::CallbackQueue* queue) {
   nh.setCallbackQueue(queue);
   return nh;
 }
 
-/// Runs a function on the thread of a callback queue.
-class Callback : public ros::CallbackInterface {
- public:
-  explicit Callback(std::function<void()> function) : function_(std::move(function)) {}
-  CallResult call() override {
-    function_();
-    return Success;
-  }
-
- private:
-  std::function<void()> function_;
-};
-
-/// Action `run_trial`: publishes a torque on `torque` for each image of the trial, with the stamp
-/// of the image. One thread handles images: it prepares trials, plans, and reads applied torques.
-/// The thread that spins the global queue handles everything else, such as cancelled goals,
-/// timeouts and Ctrl-C, so that neither a plan nor a preparation delays them.
-class MpcNode {
- public:
-  /// @param nh          node handle of topics and action
-  /// @param pnh         node handle of parameters
-  /// @param image_size  width and height of the images after resizing [pixels]
-  MpcNode(ros::NodeHandle nh, ros::NodeHandle pnh, int image_size, const MpcOptions& mpc,
-          const ControllerOptions& controller)
-      : image_size_(image_size),
-        mpc_(mpc),
-        controller_(controller),
-        applied_(nh),
-        transport_(withQueue(nh, &image_queue_)),
-        torque_pub_(nh.advertise<ddm_msgs::Torque>(topics::kTorque, kQueue)),
-        plan_pub_(nh.advertise<ddm_msgs::Plan>(topics::kPlan, kQueue)),
-        scalars_pub_(nh.advertise<ddm_msgs::PlanScalars>(topics::kPlanScalars, kQueue)),
-        health_(nh, pnh),
-        server_(nh, topics::kRunTrial, /*auto_start=*/false),
-        image_spinner_(/*thread_count=*/1, &image_queue_) {
-    if (controller.publish_effort) effort_.emplace(nh, controller.torque_dim);
-    server_.registerGoalCallback([this] { onGoal(); });
-    server_.registerPreemptCallback([this] { onPreempt(); });
-    model_sub_ = nh.subscribe(topics::kModel, 1, &MpcNode::onModel, this);
-    goal_image_sub_ = nh.subscribe(topics::kGoalImage, 1, &MpcNode::onGoalImage, this);
-    timer_ = nh.createSteadyTimer(kTick, [this](const ros::SteadyTimerEvent&) { onTick(); });
-    image_sub_ = transport_.subscribe(
-        topics::kImage, 1, &MpcNode::onImage, this,
-        image_transport::TransportHints("raw", ros::TransportHints().tcpNoDelay()));
-    image_spinner_.start();
-    server_.start();  // last: a client that sees the action can use all topics
-  }
-
-  ~MpcNode() {
-    stop();                 // otherwise the spinner waits for the end of the current plan
-    image_spinner_.stop();  // no callback runs after this line
-  }
-
-  /// Ends the current trial and publishes zero torque to every motor if controller/publish_effort.
-  /// @return false if there is no trial
-  bool stop() {
-    if (goal_ == nullptr) return false;
-    endTrial();
-    return true;
-  }
-
- private:
-  /// Reason why a trial must end. An empty text means that nothing is wrong.
-  struct Trouble {
-    std::string text;
-    std::string topic;  ///< topic whose publishers the message names; may be empty
-  };
-
-  // The next functions are called by the thread of the global queue.
-
-  void onGoal() {
-    // An image that arrives now is answered after the trial has begun.
-    std::unique_lock<std::mutex> lock(mutex_);
-    goal_ = server_.acceptNewGoal();
-    health_.expect(ControlHealth::Expected::kModel);
-    last_progress_ = ros::SteadyTime::now();
-    const std::string others = effort_ ? otherPublishers(effort_->topic()) : "";
-    if (!others.empty()) {
-      lock.unlock();
-      abort({"trial refused: " + others + " also publish(es) " + effort_->topic() +
-                 ", and a motor must have one master: set controller/publish_effort to false, as "
-                 "next to robot_node",
-             ""});
-      return;
-    }
-    beginIfReady(std::move(lock));
-  }
-
-  void onPreempt() {
-    if (goal_ == nullptr) return;
-    const ddm_msgs::RunTrialResult result = endTrial();
-    // A new goal also sets the preempt flag and is accepted right after. It replaces this trial.
-    if (server_.isActive() && !server_.isNewGoalAvailable()) server_.setPreempted(result);
-  }
-
-  void onModel(const ddm_msgs::ModelConstPtr& message) {
-    const std::string bytes(message->data.begin(), message->data.end());
-    try {
-      model_ =
-          std::make_shared<const Ddm>(deserialiseModel(bytes, "on topic " + model_sub_.getTopic()));
-    } catch (const std::exception& e) {
-      log_.error(std::string("model refused: ") + e.what());
-      return;
-    }
-    model_id_ = modelId(bytes);
-    health_.setModel(*message);
-    log_.info("model " + model_id_ + " of trial " + std::to_string(message->trial) + " received");
-    beginIfReady(std::unique_lock<std::mutex>(mutex_));
-  }
-
-  void onGoalImage(const sensor_msgs::ImageConstPtr& image) {
-    try {
-      decodeImage(*image, image_size_);
-    } catch (const std::exception& e) {
-      log_.error(std::string("goal image refused: ") + e.what());
-      return;
-    }
-    std::unique_lock<std::mutex> lock(mutex_);
-    goal_image_ = image;
-    goal_changed_ = true;
-    beginIfReady(std::move(lock));
-  }
-
-  /// Creates the trial once its model and its goal image have arrived, and queues its preparation for
-  /// the image thread.
-  /// @param lock  lock of mutex_
-  void beginIfReady(std::unique_lock<std::mutex> lock) {
-    if (goal_ == nullptr || trial_ != nullptr || finished_) return;
-    const std::string& model_id = goal_->model_id;
-    if (!model_id.empty() && model_id != model_id_) return;
-    const bool goal_image_is_there =
-        goal_->goal.isZero() ||
-        (goal_image_ != nullptr && goal_image_->header.stamp == goal_->goal);
-    if (!goal_image_is_there) return;
-    try {
-      trial_ = std::make_shared<TrialRun>(*goal_, model_id.empty() ? nullptr : model_, goal_image_,
-                                          image_size_, mpc_, controller_);
-    } catch (const std::exception& e) {
-      lock.unlock();
-      abort({std::string("trial refused: ") + e.what(), ""});
-      return;
-    }
-    preparing_ = true;
-    goal_changed_ = false;
-    fed_back_ = 0;
-    health_.expect(ControlHealth::Expected::kNothing);
-    image_queue_.addCallback(boost::make_shared<Callback>([this] { prepare(); }));
-  }
-
-  /// Reports the end of a trial that the image thread has ended.
-  void onFinish() {
-    std::unique_lock<std::mutex> lock(mutex_);
-    if (!finished_) return;  // the trial was cancelled before this call
-    const Trouble trouble = *finished_;
-    lock.unlock();
-    if (!trouble.text.empty()) return abort(trouble);
-    const ddm_msgs::RunTrialGoalConstPtr goal = goal_;
-    const ddm_msgs::RunTrialResult result = endTrial();
-    std::ostringstream text;
-    text << "trial " << goal->trial << (goal->evaluation != 0 ? " (evaluation)" : "") << ": "
-         << result.num_steps << " torques, " << result.num_exploratory << " exploratory, "
-         << result.num_failed_plans << " failed plans, " << result.num_cut_plans << " cut short";
-    log_.info(text.str());
-    server_.setSucceeded(result);
-  }
-
-  void onTick() {
-    if (goal_ == nullptr) return;
-    ddm_msgs::RunTrialFeedback feedback;
-    {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      if (trial_ != nullptr) feedback.step = trial_->result().num_steps;
-    }
-    if (feedback.step != fed_back_) server_.publishFeedback(feedback);
-    fed_back_ = feedback.step;
-    const std::optional<Trouble> silence = describeSilence();
-    if (silence) abort(*silence);
-  }
-
-  /// @return what has been missing for longer than controller/timeout; empty if nothing is missing
-  std::optional<Trouble> describeSilence() {
-    std::ostringstream reason;
-    std::string topic = model_sub_.getTopic();
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (finished_ || preparing_) return std::nullopt;
-    const ros::SteadyTime since =
-        std::max(last_progress_, deciding_since_.value_or(last_progress_));
-    if ((ros::SteadyTime::now() - since).toSec() <= controller_.timeout) return std::nullopt;
-    if (trial_ == nullptr) {
-      const bool is_goal = goal_->model_id.empty() || goal_->model_id == model_id_;
-      reason << (is_goal ? "the goal image of the trial" : "model " + goal_->model_id)
-             << " did not come";
-      if (is_goal) topic = goal_image_sub_.getTopic();
-    } else if (deciding_since_) {
-      reason << "no plan for step " << trial_->result().num_steps + 1;
-      topic.clear();
-    } else {
-      reason << "no image after step " << trial_->result().num_steps;
-      topic = image_sub_.getTopic();
-    }
-    reason << " within " << controller_.timeout << " s";
-    if (topic.empty()) reason << ": set mpc/time_budget";
-    return Trouble{reason.str(), topic};
-  }
-
-  /// Ends the trial with zero torque, because an effort controller keeps its last torque otherwise.
-  ddm_msgs::RunTrialResult endTrial() {
-    goal_.reset();
-    const std::lock_guard<std::mutex> lock(mutex_);
-    health_.expect(ControlHealth::Expected::kNothing);
-    ddm_msgs::RunTrialResult result;
-    if (trial_ != nullptr) {
-      result = trial_->result();
-      trial_->end();
-    }
-    trial_.reset();
-    preparing_ = false;
-    finished_.reset();
-    if (effort_) effort_->publish(std::vector<double>(controller_.torque_dim, 0.0));
-    return result;
-  }
-
-  /// Ends the trial before it asks the ROS master for publishers, since the master may answer late.
-  void abort(const Trouble& trouble) {
-    const ddm_msgs::RunTrialResult result = endTrial();
-    std::string reason = trouble.text;
-    if (trouble.topic == image_sub_.getTopic()) {
-      reason += ": " + describeImagePublishers(trouble.topic, "camera/image_raw:=");
-    } else if (!trouble.topic.empty()) {
-      reason += ": " + describePublishers(trouble.topic);
-    }
-    log_.error(reason);
-    server_.setAborted(result, reason);
-  }
-
-  // The next functions are called by the image thread.
-
-  /// Prepares the trial. In lock-step, the first image may have arrived before the goal, and the
-  /// simulator sends no second image before it gets a torque.
-  void prepare() {
-    const std::shared_ptr<TrialRun> trial = preparedTrial();
-    if (trial == nullptr || !trial->startIsGiven() || trial->lastAnswered()) return;
-    const sensor_msgs::ImageConstPtr image = last_image_;
-    if (image != nullptr) answer(*image);
-  }
-
-  /// Prepares the trial unless that is done. Releases the lock meanwhile, up to two seconds.
-  /// @return the current trial; null if there is none
-  std::shared_ptr<TrialRun> preparedTrial() {
-    std::unique_lock<std::mutex> lock(mutex_);
-    const std::shared_ptr<TrialRun> trial = trial_;
-    if (trial == nullptr || !preparing_) return trial;
-    lock.unlock();
-    trial->prepare();
-    lock.lock();
-    if (trial_ != trial) return nullptr;  // the trial was cancelled meanwhile
-    preparing_ = false;
-    applied_.clear();
-    last_progress_ = ros::SteadyTime::now();
-    health_.expect(ControlHealth::Expected::kImage);
-    return trial;
-  }
-
-  void onImage(const sensor_msgs::ImageConstPtr& image) {
-    last_image_ = image;
-    health_.countImage();
-    answer(*image);
-  }
-
-  void answer(const sensor_msgs::Image& image) {
-    const auto arrival = std::chrono::steady_clock::now();
-    // A client whose goal is accepted may send an image before the queue calls prepare().
-    const std::shared_ptr<TrialRun> trial = preparedTrial();
-    std::unique_lock<std::mutex> lock(mutex_);
-    if (trial == nullptr || trial->ended()) return;
-    const sensor_msgs::ImageConstPtr new_goal = goal_changed_ ? goal_image_ : nullptr;
-    goal_changed_ = false;
-    deciding_since_ = ros::SteadyTime::now();
-    lock.unlock();
-    std::optional<Decision> decision;
-    Trouble trouble;
-    try {
-      decision = decide(trial.get(), new_goal, image, arrival);
-    } catch (const std::exception& e) {
-      trouble = {std::string("image refused: ") + e.what(), image_sub_.getTopic()};
-    }
-
-    lock.lock();
-    deciding_since_.reset();
-    if (trial->ended()) return;  // it was cancelled meanwhile; its motors have zero torque
-    if (!trouble.text.empty()) {
-      publishTorque(image.header.stamp, Eigen::VectorXd::Zero(controller_.torque_dim), false);
-    } else if (decision) {
-      last_progress_ = ros::SteadyTime::now();
-      if (trial->result().num_steps == 0) scalars_.forget();
-      trial->collect(image.header.stamp, *decision);
-      publish(image.header, *decision);
-      last_image_.reset();  // no later trial may begin with it, even if the clock is set back
-      if (!trial->done()) return;
-    } else {
-      return;
-    }
-    trial->end();
-    finished_ = trouble;
-    ros::getGlobalCallbackQueue()->addCallback(
-        boost::make_shared<Callback>([this] { onFinish(); }));
-  }
-
-  /// Decides the torque for an image. Needs no lock: a new goal may take as long to prepare as a
-  /// plan.
-  /// @param new_goal  goal image that arrived after the last image; null: none
-  /// @param arrival   arrival of the image, where mpc/time_budget begins
-  /// @return          empty if the image is not the next one of the trial
-  /// @throws std::invalid_argument if the image cannot be answered
-  std::optional<Decision> decide(TrialRun* trial, const sensor_msgs::ImageConstPtr& new_goal,
-                                 const sensor_msgs::Image& image,
-                                 std::chrono::steady_clock::time_point arrival) {
-    if (image_sub_.getNumPublishers() > 1) {
-      throw std::invalid_argument("only one node may publish images: stop the others");
-    }
-    if (new_goal != nullptr) trial->setGoal(*new_goal);
-    if (const std::optional<ros::Time> last = trial->lastAnswered()) {
-      const ddm_msgs::TorqueConstPtr applied = applied_.after(*last);
-      if (applied != nullptr) trial->takeApplied(*applied);
-    }
-    return trial->decide(image, arrival);
-  }
-
-  void publish(const std_msgs::Header& header, const Decision& decision) {
-    publishTorque(header.stamp, decision.torque, decision.exploratory);
-    if (!decision.plan) {
-      scalars_.forget();
-      return;
-    }
-    const Plan& plan = *decision.plan;
-    health_.countPlan(plan);
-    const ros::SteadyTime now = ros::SteadyTime::now();
-    if (plan.status == PlanStatus::kFailed && now - last_plan_log_ >= kPlanLogPeriod) {
-      last_plan_log_ = now;
-      log_.warn("plan failed, the torque is 0: " + plan.message);
-    }
-    plan_pub_.publish(planMessage(header.stamp, plan));
-    scalars_pub_.publish(scalars_.of(header.stamp, plan, decision.goal_distance));
-  }
-
-  void publishTorque(const ros::Time& stamp, const Eigen::VectorXd& torque, bool exploratory) {
-    ddm_msgs::Torque message;
-    message.header.stamp = stamp;
-    message.torque = flat(torque);
-    message.exploratory = exploratory;
-    torque_pub_.publish(message);
-    health_.countTorque();
-    if (effort_) effort_->publish(message.torque);
-  }
-
-  LogThread log_;  // so that a paused terminal cannot delay stop()
-  const int image_size_;
-  const MpcOptions mpc_;
-  const ControllerOptions controller_;
-
-  // Used only by the thread of the global queue.
-  std::shared_ptr<const Ddm> model_;
-  std::string model_id_;
-  ddm_msgs::RunTrialGoalConstPtr goal_;  // null: no trial
-  std::uint32_t fed_back_ = 0;           // steps in the last feedback
-
-  // Used only by the image thread.
-  // Not yet answered; may belong to a trial whose goal is still to come. Null: none
-  sensor_msgs::ImageConstPtr last_image_;
-  PlanScalars scalars_;
-  ros::SteadyTime last_plan_log_;
-
-  // Guards the members up to deciding_since_, and effort_. Not held while a plan is computed.
-  std::mutex mutex_;
-  sensor_msgs::ImageConstPtr goal_image_;  // the newest; null: none received
-  bool goal_changed_ = false;              // goal_image_ is newer than the goal of the trial
-  std::shared_ptr<TrialRun> trial_;        // null: no trial, or its model or goal image is missing
-  bool preparing_ = false;                 // whether trial_ still needs prepare()
-  std::optional<Trouble> finished_;        // set if the image thread has ended the trial
-  ros::SteadyTime last_progress_;
-  std::optional<ros::SteadyTime> deciding_since_;
-
-  AppliedTorques applied_;
-  ros::CallbackQueue image_queue_;
-  image_transport::ImageTransport transport_;
-  ros::Publisher torque_pub_;
-  std::optional<EffortPublisher> effort_;  // empty: robot_node or a simulator commands the motors
-  ros::Publisher plan_pub_;
-  ros::Publisher scalars_pub_;
-  image_transport::Subscriber image_sub_;
-  ros::Subscriber model_sub_;
-  ros::Subscriber goal_image_sub_;
-  ros::SteadyTimer timer_;
-  ControlHealth health_;
-  actionlib::SimpleActionServer<ddm_msgs::RunTrialAction> server_;
-  // Last member: its destructor stops the image thread before other members are destroyed.
-  ros::AsyncSpinner image_spinner_;
-};
-
 }  // namespace
-}  // namespace ddm
 
-int main(int argc, char** argv) {
-  ddm::silenceSolverLog();
-  const auto run = [](auto nh, auto pnh, ddm::ParamReader* params) {
-    params->ignore("image_transport");    // image_transport reads it
-    params->ignore("diagnostic_period");  // diagnostic_updater reads it
-    const auto image = params->read<ddm::ImageOptions>("image");
-    const auto mpc = params->read<ddm::MpcOptions>("mpc");
-    const auto controller = params->read<ddm::ControllerOptions>("controller");
-    params->requireValid();
-    ROS_INFO_STREAM("mpc_node runs with\n" << ddm::toYaml(mpc) << "\n" << ddm::toYaml(controller));
-    ddm::MpcNode node(nh, pnh, image.size, mpc, controller);
-    ddm::runUntilEnd([] { ros::getGlobalCallbackQueue()->callAvailable(ddm::kLook); },
-                     [&node] { return node.stop(); });
-  };
-  return ddm::runNode("mpc_node", argc, argv, run, ddm::Ending::kByLastMessage);
+MpcNode::MpcNode(ros::NodeHandle nh, ros::NodeHandle pnh, int image_size, const MpcOptions& mpc,
+                 const ControllerOptions& controller)
+    : image_size_(image_size),
+      mpc_(mpc),
+      controller_(controller),
+      applied_(nh),
+      transport_(withQueue(nh, &image_queue_)),
+      torque_pub_(nh.advertise<ddm_msgs::Torque>(topics::kTorque, kQueue)),
+      plan_pub_(nh.advertise<ddm_msgs::Plan>(topics::kPlan, kQueue)),
+      scalars_pub_(nh.advertise<ddm_msgs::PlanScalars>(topics::kPlanScalars, kQueue)),
+      health_(nh, pnh),
+      server_(nh, topics::kRunTrial, /*auto_start=*/false),
+      prepare_(boost::make_shared<Callback>([this] { prepare(); })),
+      finish_(boost::make_shared<Callback>([this] { onFinish(); })),
+      image_spinner_(/*thread_count=*/1, &image_queue_) {
+  if (controller.publish_effort) effort_.emplace(nh, controller.torque_dim);
+  server_.registerGoalCallback([this] { onGoal(); });
+  server_.registerPreemptCallback([this] { onPreempt(); });
+  model_sub_ = nh.subscribe(topics::kModel, 1, &MpcNode::onModel, this);
+  goal_image_sub_ = nh.subscribe(topics::kGoalImage, 1, &MpcNode::onGoalImage, this);
+  timer_ = nh.createSteadyTimer(kTick, [this](const ros::SteadyTimerEvent&) { onTick(); });
+  image_sub_ = transport_.subscribe(
+      topics::kImage, 1, &MpcNode::onImage, this,
+      image_transport::TransportHints("raw", ros::TransportHints().tcpNoDelay()));
+  image_spinner_.start();
+  server_.start();  // last: a client that sees the action can use all topics
 }
+
+MpcNode::~MpcNode() {
+  stop();                 // otherwise the spinner waits for the end of the current plan
+  image_spinner_.stop();  // no callback runs after this line
+}
+
+bool MpcNode::stop() {
+  if (goal_ == nullptr) return false;
+  endTrial();
+  return true;
+}
+
+void MpcNode::onGoal() {
+  // An image that arrives now is answered after the trial has begun.
+  std::unique_lock<std::mutex> lock(mutex_);
+  goal_ = server_.acceptNewGoal();
+  health_.expect(ControlHealth::Expected::kModel);
+  last_progress_ = ros::SteadyTime::now();
+  const std::string others = effort_ ? otherPublishers(effort_->topic()) : "";
+  if (!others.empty()) {
+    lock.unlock();
+    abort({"trial refused: " + others + " also publish(es) " + effort_->topic() +
+               ", and a motor must have one master: set controller/publish_effort to false, as "
+               "next to robot_node",
+           ""});
+    return;
+  }
+  beginIfReady(std::move(lock));
+}
+
+void MpcNode::onPreempt() {
+  if (goal_ == nullptr) return;
+  const ddm_msgs::RunTrialResult result = endTrial();
+  // A new goal also sets the preempt flag and is accepted right after. It replaces this trial.
+  if (server_.isActive() && !server_.isNewGoalAvailable()) server_.setPreempted(result);
+}
+
+void MpcNode::onModel(const ddm_msgs::ModelConstPtr& message) {
+  const std::string bytes(message->data.begin(), message->data.end());
+  try {
+    model_ =
+        std::make_shared<const Ddm>(deserialiseModel(bytes, "on topic " + model_sub_.getTopic()));
+  } catch (const std::exception& e) {
+    log_.error(std::string("model refused: ") + e.what());
+    return;
+  }
+  model_id_ = modelId(bytes);
+  health_.setModel(*message);
+  log_.info("model " + model_id_ + " of trial " + std::to_string(message->trial) + " received");
+  beginIfReady(std::unique_lock<std::mutex>(mutex_));
+}
+
+void MpcNode::onGoalImage(const sensor_msgs::ImageConstPtr& image) {
+  try {
+    decodeImage(*image, image_size_);
+  } catch (const std::exception& e) {
+    log_.error(std::string("goal image refused: ") + e.what());
+    return;
+  }
+  std::unique_lock<std::mutex> lock(mutex_);
+  goal_image_ = image;
+  goal_changed_ = true;
+  beginIfReady(std::move(lock));
+}
+
+/// Creates the trial once its model and its goal image have arrived, and queues its preparation for
+/// the image thread.
+/// @param lock  lock of mutex_
+void MpcNode::beginIfReady(std::unique_lock<std::mutex> lock) {
+  if (goal_ == nullptr || trial_ != nullptr || finished_) return;
+  const std::string& model_id = goal_->model_id;
+  if (!model_id.empty() && model_id != model_id_) return;
+  const bool goal_image_is_there =
+      goal_->goal.isZero() || (goal_image_ != nullptr && goal_image_->header.stamp == goal_->goal);
+  if (!goal_image_is_there) return;
+  try {
+    trial_ = std::make_shared<TrialRun>(*goal_, model_id.empty() ? nullptr : model_, goal_image_,
+                                        image_size_, mpc_, controller_);
+  } catch (const std::exception& e) {
+    lock.unlock();
+    abort({std::string("trial refused: ") + e.what(), ""});
+    return;
+  }
+  preparing_ = true;
+  goal_changed_ = false;
+  fed_back_ = 0;
+  health_.expect(ControlHealth::Expected::kNothing);
+  image_queue_.addCallback(prepare_);
+}
+
+/// Prepares the trial. In lock-step, the first image may have arrived before the goal, and the
+/// simulator sends no second image before it gets a torque.
+void MpcNode::prepare() {
+  const std::shared_ptr<TrialRun> trial = preparedTrial();
+  if (trial == nullptr || !trial->startIsGiven() || trial->lastAnswered()) return;
+  const sensor_msgs::ImageConstPtr image = last_image_;
+  if (image != nullptr) answer(*image);
+}
+
+/// Prepares the trial unless that is done. Releases the lock meanwhile, up to two seconds.
+/// @return the current trial; null if there is none
+std::shared_ptr<TrialRun> MpcNode::preparedTrial() {
+  std::unique_lock<std::mutex> lock(mutex_);
+  const std::shared_ptr<TrialRun> trial = trial_;
+  if (trial == nullptr || !preparing_) return trial;
+  lock.unlock();
+  trial->prepare();
+  lock.lock();
+  if (trial_ != trial) return nullptr;  // the trial was cancelled meanwhile
+  preparing_ = false;
+  applied_.clear();
+  last_progress_ = ros::SteadyTime::now();
+  health_.expect(ControlHealth::Expected::kImage);
+  return trial;
+}
+
+void MpcNode::onImage(const sensor_msgs::ImageConstPtr& image) {
+  last_image_ = image;
+  health_.countImage();
+  answer(*image);
+}
+
+void MpcNode::answer(const sensor_msgs::Image& image) {
+  const auto arrival = std::chrono::steady_clock::now();
+  // A client whose goal is accepted may send an image before the queue calls prepare().
+  const std::shared_ptr<TrialRun> trial = preparedTrial();
+  std::unique_lock<std::mutex> lock(mutex_);
+  if (trial == nullptr || trial->ended()) return;
+  const sensor_msgs::ImageConstPtr new_goal = goal_changed_ ? goal_image_ : nullptr;
+  goal_changed_ = false;
+  deciding_since_ = ros::SteadyTime::now();
+  lock.unlock();
+  std::optional<Decision> decision;
+  Trouble trouble;
+  try {
+    decision = decide(trial.get(), new_goal, image, arrival);
+  } catch (const std::exception& e) {
+    trouble = {std::string("image refused: ") + e.what(), image_sub_.getTopic()};
+  }
+
+  lock.lock();
+  deciding_since_.reset();
+  if (trial->ended()) return;  // it was cancelled meanwhile; its motors have zero torque
+  if (!trouble.text.empty()) {
+    publishTorque(image.header.stamp, Eigen::VectorXd::Zero(controller_.torque_dim), false);
+  } else if (decision) {
+    last_progress_ = ros::SteadyTime::now();
+    if (trial->result().num_steps == 0) scalars_.forget();
+    trial->collect(image.header.stamp, *decision);
+    publish(image.header, *decision);
+    last_image_.reset();  // no later trial may begin with it, even if the clock is set back
+    if (!trial->done()) return;
+  } else {
+    return;
+  }
+  trial->end();
+  finished_ = trouble;
+  ros::getGlobalCallbackQueue()->addCallback(finish_);
+}
+
+/// Decides the torque for an image. Needs no lock: a new goal may take as long to prepare as a
+/// plan.
+/// @param new_goal  goal image that arrived after the last image; null: none
+/// @param arrival   arrival of the image, where mpc/time_budget begins
+/// @return          empty if the image is not the next one of the trial
+/// @throws std::invalid_argument if the image cannot be answered
+std::optional<Decision> MpcNode::decide(TrialRun* trial, const sensor_msgs::ImageConstPtr& new_goal,
+                                        const sensor_msgs::Image& image,
+                                        std::chrono::steady_clock::time_point arrival) {
+  if (image_sub_.getNumPublishers() > 1) {
+    throw std::invalid_argument("only one node may publish images: stop the others");
+  }
+  if (new_goal != nullptr) trial->setGoal(*new_goal);
+  if (const std::optional<ros::Time> last = trial->lastAnswered()) {
+    const ddm_msgs::TorqueConstPtr applied = applied_.after(*last);
+    if (applied != nullptr) trial->takeApplied(*applied);
+  }
+  return trial->decide(image, arrival);
+}
+
+void MpcNode::publish(const std_msgs::Header& header, const Decision& decision) {
+  publishTorque(header.stamp, decision.torque, decision.exploratory);
+  if (!decision.plan) {
+    scalars_.forget();
+    return;
+  }
+  const Plan& plan = *decision.plan;
+  health_.countPlan(plan);
+  const ros::SteadyTime now = ros::SteadyTime::now();
+  if (plan.status == PlanStatus::kFailed && now - last_plan_log_ >= kPlanLogPeriod) {
+    last_plan_log_ = now;
+    log_.warn("plan failed, the torque is 0: " + plan.message);
+  }
+  plan_pub_.publish(planMessage(header.stamp, plan));
+  scalars_pub_.publish(scalars_.of(header.stamp, plan, decision.goal_distance));
+}
+
+void MpcNode::publishTorque(const ros::Time& stamp, const Eigen::VectorXd& torque,
+                            bool exploratory) {
+  ddm_msgs::Torque message;
+  message.header.stamp = stamp;
+  message.torque = flat(torque);
+  message.exploratory = exploratory;
+  torque_pub_.publish(message);
+  health_.countTorque();
+  if (effort_) effort_->publish(message.torque);
+}
+
+/// Reports the end of a trial that the image thread has ended.
+void MpcNode::onFinish() {
+  std::unique_lock<std::mutex> lock(mutex_);
+  if (!finished_) return;  // the trial was cancelled before this call
+  const Trouble trouble = *finished_;
+  lock.unlock();
+  if (!trouble.text.empty()) return abort(trouble);
+  const ddm_msgs::RunTrialGoalConstPtr goal = goal_;
+  const ddm_msgs::RunTrialResult result = endTrial();
+  std::ostringstream text;
+  text << "trial " << goal->trial << (goal->evaluation != 0 ? " (evaluation)" : "") << ": "
+       << result.num_steps << " torques, " << result.num_exploratory << " exploratory, "
+       << result.num_failed_plans << " failed plans, " << result.num_cut_plans << " cut short";
+  log_.info(text.str());
+  server_.setSucceeded(result);
+}
+
+void MpcNode::onTick() {
+  if (goal_ == nullptr) return;
+  ddm_msgs::RunTrialFeedback feedback;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (trial_ != nullptr) feedback.step = trial_->result().num_steps;
+  }
+  if (feedback.step != fed_back_) server_.publishFeedback(feedback);
+  fed_back_ = feedback.step;
+  const std::optional<Trouble> silence = describeSilence();
+  if (silence) abort(*silence);
+}
+
+/// @return what has been missing for longer than controller/timeout; empty if nothing is missing
+std::optional<MpcNode::Trouble> MpcNode::describeSilence() {
+  std::ostringstream reason;
+  std::string topic = model_sub_.getTopic();
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (finished_ || preparing_) return std::nullopt;
+  const ros::SteadyTime since = std::max(last_progress_, deciding_since_.value_or(last_progress_));
+  if ((ros::SteadyTime::now() - since).toSec() <= controller_.timeout) return std::nullopt;
+  if (trial_ == nullptr) {
+    const bool is_goal = goal_->model_id.empty() || goal_->model_id == model_id_;
+    reason << (is_goal ? "the goal image of the trial" : "model " + goal_->model_id)
+           << " did not come";
+    if (is_goal) topic = goal_image_sub_.getTopic();
+  } else if (deciding_since_) {
+    reason << "no plan for step " << trial_->result().num_steps + 1;
+    topic.clear();
+  } else {
+    reason << "no image after step " << trial_->result().num_steps;
+    topic = image_sub_.getTopic();
+  }
+  reason << " within " << controller_.timeout << " s";
+  if (topic.empty()) reason << ": set mpc/time_budget";
+  return Trouble{reason.str(), topic};
+}
+
+/// Ends the trial with zero torque, because an effort controller keeps its last torque otherwise.
+ddm_msgs::RunTrialResult MpcNode::endTrial() {
+  goal_.reset();
+  const std::lock_guard<std::mutex> lock(mutex_);
+  health_.expect(ControlHealth::Expected::kNothing);
+  ddm_msgs::RunTrialResult result;
+  if (trial_ != nullptr) {
+    result = trial_->result();
+    trial_->end();
+  }
+  trial_.reset();
+  preparing_ = false;
+  finished_.reset();
+  if (effort_) effort_->publishZero();
+  return result;
+}
+
+/// Ends the trial before it asks the ROS master for publishers, since the master may answer late.
+void MpcNode::abort(const Trouble& trouble) {
+  const ddm_msgs::RunTrialResult result = endTrial();
+  std::string reason = trouble.text;
+  if (trouble.topic == image_sub_.getTopic()) {
+    reason += ": " + describeImagePublishers(trouble.topic, "camera/image_raw:=");
+  } else if (!trouble.topic.empty()) {
+    reason += ": " + describePublishers(trouble.topic);
+  }
+  log_.error(reason);
+  server_.setAborted(result, reason);
+}
+
+}  // namespace ddm

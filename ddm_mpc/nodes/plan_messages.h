@@ -6,7 +6,6 @@
 #include <ddm_msgs/PlanScalars.h>
 
 #include <Eigen/Core>
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -14,34 +13,11 @@
 
 namespace ddm {
 
-static_assert(static_cast<int>(PlanStatus::kConverged) == ddm_msgs::Plan::CONVERGED &&
-                  static_cast<int>(PlanStatus::kIterationLimit) ==
-                      ddm_msgs::Plan::ITERATION_LIMIT &&
-                  static_cast<int>(PlanStatus::kFailed) == ddm_msgs::Plan::FAILED &&
-                  static_cast<int>(PlanStatus::kTimeLimit) == ddm_msgs::Plan::TIME_LIMIT,
-              "a plan's status has the same number in both");
-
 /// @return all entries, column by column
-inline std::vector<double> flat(const Eigen::MatrixXd& values) {
-  return std::vector<double>(values.data(), values.data() + values.size());
-}
+std::vector<double> flat(const Eigen::MatrixXd& values);
 
 /// @param stamp  stamp of the image that the plan answers
-inline ddm_msgs::Plan planMessage(const ros::Time& stamp, const Plan& plan) {
-  ddm_msgs::Plan message;
-  message.header.stamp = stamp;
-  message.horizon = static_cast<std::uint32_t>(plan.torques.cols());
-  message.torque = flat(plan.torques);
-  message.feature = flat(plan.features);
-  message.goal_feature = flat(plan.goal_feature);
-  message.cost = plan.cost;
-  message.iterations = plan.iterations;
-  message.evaluations = plan.evaluations;
-  message.status = static_cast<std::uint8_t>(plan.status);
-  message.message = plan.message;
-  message.solve_time = plan.solve_time;
-  return message;
-}
+ddm_msgs::Plan planMessage(const ros::Time& stamp, const Plan& plan);
 
 /// Scalars of each plan of a trial. The prediction error is the distance between the feature of an
 /// image and the prediction of that feature by the plan before it.
@@ -49,23 +25,7 @@ class PlanScalars {
  public:
   /// @param goal_distance  in units of the spread of the features; empty: unknown
   ddm_msgs::PlanScalars of(const ros::Time& stamp, const Plan& plan,
-                           const std::optional<double>& goal_distance) {
-    constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-    ddm_msgs::PlanScalars out;
-    out.header.stamp = stamp;
-    out.goal_distance = goal_distance.value_or(kUnknown);
-    out.prediction_error = kUnknown;
-    out.cost = plan.cost;
-    out.solve_time = plan.solve_time;
-    if (plan.status == PlanStatus::kFailed) {
-      forget();
-      return out;
-    }
-    const Eigen::VectorXd z = plan.features.col(0);
-    if (predicted_.size() > 0) out.prediction_error = (z - predicted_).norm();
-    predicted_ = plan.features.col(1);
-    return out;
-  }
+                           const std::optional<double>& goal_distance);
 
   /// Call if the next image does not follow the last plan by one time step.
   void forget() { predicted_.resize(0); }

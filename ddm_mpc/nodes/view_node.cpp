@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cv_bridge/cv_bridge.h>
 #include <ddm_common/image_codec.h>
+#include <ddm_common/image_options.h>
 #include <ddm_common/run_node.h>
 #include <ddm_model/ddm.h>
 #include <ddm_model/model_file.h>

@@ -4,6 +4,7 @@
 
 #include <actionlib_msgs/GoalID.h>
 #include <ddm_common/image_codec.h>
+#include <ddm_common/image_options.h>
 #include <ddm_common/run_node.h>
 #include <ddm_msgs/topics.h>
 #include <std_msgs/Bool.h>

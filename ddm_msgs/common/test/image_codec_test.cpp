@@ -256,15 +256,5 @@ TEST(ImageCodec, RefusesACropThatReachesBeyondTheImage) {
   }
 }
 
-TEST(ImageOptions, TheSizeHasARange) {
-  EXPECT_EQ(ImageOptions().size, 51);
-  for (const int size : {4, 1024}) EXPECT_TRUE(ImageOptions{size}.problems().empty()) << size;
-  for (const int size : {3, 1025}) {
-    const std::vector<std::string> problems = ImageOptions{size}.problems();
-    ASSERT_EQ(problems.size(), 1u) << size;
-    EXPECT_TRUE(testing::names(problems[0], {"image/size must ", ", got " + std::to_string(size)}));
-  }
-}
-
 }  // namespace
 }  // namespace ddm

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "ddm_common/config_blocks.h"
+#include "ddm_common/image_options.h"
 #include "ddm_msgs/testing/expect_error.h"
 #include "ddm_msgs/testing/temp_folder.h"
 
@@ -249,6 +250,16 @@ TEST(ParamReaderFiles, RefusesBadFilesWithPathAndLine) {
     EXPECT_TRUE(testing::throwsNaming<std::invalid_argument>(
         [&file] { ParamReader::fromFiles({file.path()}); }, {file.path() + bad.line, bad.part}))
         << bad.yaml;
+  }
+}
+
+TEST(ImageOptions, TheSizeHasARange) {
+  EXPECT_EQ(ImageOptions().size, 51);
+  for (const int size : {4, 1024}) EXPECT_TRUE(ImageOptions{size}.problems().empty()) << size;
+  for (const int size : {3, 1025}) {
+    const std::vector<std::string> problems = ImageOptions{size}.problems();
+    ASSERT_EQ(problems.size(), 1u) << size;
+    EXPECT_TRUE(testing::names(problems[0], {"image/size must ", ", got " + std::to_string(size)}));
   }
 }
 

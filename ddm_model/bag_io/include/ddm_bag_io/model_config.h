@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ddm_common/image_codec.h>
+#include <ddm_common/image_options.h>
 #include <ddm_common/option_checks.h>
 #include <ddm_common/param_reader.h>
 #include <ddm_model/model_options.h>

@@ -12,21 +12,6 @@
 
 namespace ddm {
 
-/// Block `image`.
-struct ImageOptions {
-  int size = 51;  ///< width and height of all images [pixels], D = size^2
-
-  template <class Visitor>
-  void visit(Visitor& visitor) {
-    visitor("size", size);
-  }
-  /// Describes each invalid value and the rule that it breaks. Empty if all values are valid.
-  std::vector<std::string> problems() const {
-    if (size >= 4 && size <= 1024) return {};
-    return {"image/size must lie in [4, 1024], got " + std::to_string(size)};
-  }
-};
-
 /// The part of an image that is used. A width or height of 0 reaches to the edge of the image.
 struct ImageCrop {
   int x = 0;       ///< first column [pixels]
