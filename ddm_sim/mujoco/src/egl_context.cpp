@@ -9,6 +9,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "ddm_mujoco/renderer.h"
+
 namespace ddm {
 namespace {
 
@@ -86,6 +88,12 @@ std::string EglContext::renderer() const {
     return std::string(part == nullptr ? "unknown" : part);
   };
   return text(kRenderer) + ", " + text(kVersion);
+}
+
+std::string openGlRenderer() {
+  const EglContext context;
+  const EglContext::Current current(context);
+  return context.renderer();
 }
 
 EglContext::Current::Current(const EglContext& context) : display_(context.display_) {

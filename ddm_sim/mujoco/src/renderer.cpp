@@ -83,10 +83,7 @@ mjvCamera placed(const std::vector<double>& position, const std::vector<double>&
 /// Averages the colours of an image that is `factor` times larger and upside down, as OpenGL stores
 /// it.
 RenderedImage averaged(const std::vector<std::uint8_t>& drawn, int width, int height, int factor) {
-  RenderedImage rendered;
-  rendered.width = width;
-  rendered.height = height;
-  rendered.channels = 3;
+  RenderedImage rendered{width, height, 3, {}, {}};
   rendered.bytes.resize(rendered.numBytes());
   const std::size_t row_bytes = std::size_t{3} * static_cast<std::size_t>(width * factor);
   const int count = factor * factor;
@@ -221,12 +218,6 @@ class Scene {
   float nearer_ = 1.0F;
 };
 
-std::string openGlRenderer() {
-  const EglContext context;
-  const EglContext::Current current(context);
-  return context.renderer();
-}
-
 bool isDrawnAndMoves(const mjModel& model, int geom) {
   const int group = model.geom_group[geom];
   return couldBeSeen(model, geom) && (group < kNumShown || group == groupToShow(model));
@@ -334,17 +325,6 @@ void Renderer::updateScene(const mjData& data) {
 void Renderer::openContext() {
   auto context = std::make_unique<EglContext>();
   const EglContext::Current current(*context);
-  makeGpuContext();
-  mjr_setBuffer(mjFB_OFFSCREEN, &gpu_);
-  if (gpu_.currentBuffer != mjFB_OFFSCREEN) {
-    throw std::runtime_error("this OpenGL driver cannot draw without a screen");
-  }
-  requireNoError("making the textures and the image");
-  context_ = std::move(context);
-}
-
-/// Creates the textures, meshes, shadow map and image in the OpenGL context.
-void Renderer::makeGpuContext() {
   static std::mutex loading;  // MuJoCo stores the addresses of OpenGL functions in global variables
   const std::lock_guard<std::mutex> lock(loading);
   const mjModel& look = scene_->appearance();
@@ -358,6 +338,12 @@ void Renderer::makeGpuContext() {
         " samples and a shadow map of ", look.vis.quality.shadowsize, ": ", e.what(),
         "; free some memory, or make them smaller"));
   }
+  mjr_setBuffer(mjFB_OFFSCREEN, &gpu_);
+  if (gpu_.currentBuffer != mjFB_OFFSCREEN) {
+    throw std::runtime_error("this OpenGL driver cannot draw without a screen");
+  }
+  requireNoError("making the textures and the image");
+  context_ = std::move(context);
 }
 
 }  // namespace ddm

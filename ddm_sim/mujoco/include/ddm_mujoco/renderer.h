@@ -81,7 +81,6 @@ class Renderer {
  private:
   void updateScene(const mjData& data);
   void openContext();
-  void makeGpuContext();
 
   RenderOptions options_;
   std::unique_ptr<Scene> scene_;
