@@ -18,22 +18,22 @@ constexpr int kMaxSweeps = 30;
 constexpr double kVarianceTolerance = 1e-5;
 constexpr Eigen::Index kBlock = 256;  // images that are converted to float at a time
 constexpr float kWhite = 255.0F;
-constexpr float kMaxGain = 4.0F;  // the noise of a dark image must not look like the plant
+constexpr double kMaxGain = 4.0;  // the noise of a dark image must not look like the plant
 
 using Bytes = Eigen::Map<const Eigen::Matrix<std::uint8_t, Eigen::Dynamic, 1>>;
 
 /// @return root mean square of an image [grey]
 template <class Pixels>
-float brightnessOf(const Pixels& pixels) {
+double brightnessOf(const Pixels& pixels) {
   const double mean = pixels.template cast<double>().squaredNorm() / pixels.size();
-  return static_cast<float>(std::sqrt(mean)) / kWhite;
+  return std::sqrt(mean) / kWhite;
 }
 
 /// @param brightness  root mean square that the image gets [grey]; 0: it does not change
 /// @return            factor by which its grey values are multiplied
 template <class Pixels>
-float gainOf(const Pixels& pixels, float brightness) {
-  if (brightness == 0.0F) return 1.0F;
+double gainOf(const Pixels& pixels, float brightness) {
+  if (brightness == 0.0F) return 1.0;
   return std::min(kMaxGain, brightness / brightnessOf(pixels));
 }
 
@@ -83,7 +83,8 @@ class CentredImages {
       const Eigen::Index size = std::min(kBlock, data_.numImages() - begin);
       for (Eigen::Index i = 0; i < size; ++i) {
         const Bytes pixels = bytes(begin + i);
-        block.col(i) = gainOf(pixels, brightness_) * pixels.cast<float>() - mean_;
+        const auto gain = static_cast<float>(gainOf(pixels, brightness_));
+        block.col(i) = gain * pixels.cast<float>() - mean_;
       }
       scores.topRows(size).noalias() = block.leftCols(size).transpose() * columns;
       product.noalias() += block.leftCols(size) * scores.topRows(size);
@@ -119,7 +120,7 @@ Blur::Blur(int image_size, double std) {
 Eigen::MatrixXf Pca::project(const Eigen::Ref<const ImageMatrix>& pixels) const {
   Eigen::MatrixXf images = pixels.cast<float>() / kWhite;
   for (Eigen::Index i = 0; i < images.cols(); ++i) {
-    images.col(i) *= gainOf(pixels.col(i), brightness);
+    images.col(i) *= static_cast<float>(gainOf(pixels.col(i), brightness));
   }
   blur.apply(&images);
   return scale * (basis.transpose() * (images.colwise() - mean));
