@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "evaluation.h"
 
+#include <ddm_plant_plugin/testing/toy_plant.h>
 #include <ddm_sim/angles.h>
 #include <ddm_sim/pendulum.h>
-#include <ddm_sim/testing/toy_plant.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

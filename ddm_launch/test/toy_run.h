@@ -6,8 +6,8 @@
 #include <ddm_common/image_codec.h>
 #include <ddm_msgs/Torque.h>
 #include <ddm_plant_plugin/plant_config.h>
+#include <ddm_plant_plugin/testing/toy_plant.h>
 #include <ddm_sim/plant.h>
-#include <ddm_sim/testing/toy_plant.h>
 #include <sys/stat.h>
 
 #include <boost/filesystem.hpp>

@@ -9,10 +9,10 @@
 #include <set>
 #include <stdexcept>
 
+#include "ddm_plant_plugin/testing/toy_plant.h"
 #include "ddm_sim/angles.h"
 #include "ddm_sim/moving_tile.h"
 #include "ddm_sim/pendulum.h"
-#include "ddm_sim/testing/toy_plant.h"
 
 namespace ddm {
 namespace {

@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "ddm_plant_plugin/testing/toy_plant.h"
 #include "ddm_sim/pendulum.h"
-#include "ddm_sim/testing/toy_plant.h"
 
 namespace ddm {
 namespace {

@@ -14,8 +14,8 @@
 #include <string>
 #include <vector>
 
+#include "ddm_plant_plugin/testing/toy_plant.h"
 #include "ddm_sim/plant.h"
-#include "ddm_sim/testing/toy_plant.h"
 
 namespace ddm {
 namespace {

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "ddm_sim/testing/toy_plant.h"
+#include "ddm_plant_plugin/testing/toy_plant.h"
 #include "sim_node.h"
 
 namespace ddm {

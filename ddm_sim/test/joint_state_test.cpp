@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "ddm_plant_plugin/testing/toy_plant.h"
 #include "ddm_sim/moving_tile.h"
-#include "ddm_sim/testing/toy_plant.h"
 
 namespace ddm {
 namespace {

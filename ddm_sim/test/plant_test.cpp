@@ -15,8 +15,8 @@
 
 #include "ddm_common/random_stream.h"
 #include "ddm_msgs/testing/not_finite.h"
+#include "ddm_plant_plugin/testing/toy_plant.h"
 #include "ddm_sim/pendulum.h"
-#include "ddm_sim/testing/toy_plant.h"
 
 namespace ddm {
 namespace {
