@@ -4,14 +4,8 @@
 
 #include <ros/console.h>
 
-#include <chrono>
-#include <condition_variable>
-#include <deque>
 #include <memory>
-#include <mutex>
 #include <string>
-#include <thread>
-#include <utility>
 
 namespace ddm {
 
@@ -19,17 +13,9 @@ namespace ddm {
 /// terminal that is stopped (Ctrl-S, a pager, a slow connection) blocks every thread that logs.
 class LogThread {
  public:
-  LogThread() {
-    std::thread([lines = lines_] { lines->write(); }).detach();
-  }
+  LogThread();
   /// Waits at most one second for lines that are not written yet.
-  ~LogThread() {
-    std::unique_lock<std::mutex> lock(lines_->mutex);
-    lines_->ended = true;
-    lines_->changed.notify_all();
-    lines_->changed.wait_for(lock, std::chrono::seconds(1),
-                             [this] { return lines_->waiting.empty(); });
-  }
+  ~LogThread();
   LogThread(const LogThread&) = delete;
   LogThread& operator=(const LogThread&) = delete;
 
@@ -39,38 +25,11 @@ class LogThread {
   void error(const std::string& text) { add(ros::console::levels::Error, text); }
 
  private:
-  using Level = ros::console::levels::Level;
+  struct Lines;
 
-  struct Lines {
-    std::mutex mutex;
-    std::condition_variable changed;
-    std::deque<std::pair<Level, std::string>> waiting;  // the first line is being written
-    bool ended = false;
+  void add(ros::console::levels::Level level, const std::string& text);
 
-    void write() {
-      std::unique_lock<std::mutex> lock(mutex);
-      for (;;) {
-        changed.wait(lock, [this] { return ended || !waiting.empty(); });
-        if (waiting.empty()) return;
-        const auto line = waiting.front();
-        lock.unlock();
-        ROS_LOG_STREAM(line.first, ROSCONSOLE_DEFAULT_NAME, line.second);
-        lock.lock();
-        waiting.pop_front();
-        changed.notify_all();
-      }
-    }
-  };
-
-  void add(Level level, const std::string& text) {
-    const std::lock_guard<std::mutex> lock(lines_->mutex);
-    if (lines_->waiting.size() >= 1000) return;
-    lines_->waiting.emplace_back(level, text);
-    lines_->changed.notify_all();
-  }
-
-  // Shared with the thread, which may outlive this object.
-  const std::shared_ptr<Lines> lines_ = std::make_shared<Lines>();
+  std::shared_ptr<Lines> lines_;  // shared with the thread, which may outlive this object
 };
 
 }  // namespace ddm
