@@ -21,7 +21,8 @@ class MpcNodeHealthTest : public MpcNodeTest {
 
   void SetUp() override {
     MpcNodeTest::SetUp();
-    ASSERT_TRUE(waitUntil([this] { return diagnostics_.connected(); }));  // each count is told once
+    // Each count is told once, and other nodes publish /diagnostics, too.
+    ASSERT_TRUE(waitUntil([this] { return !status("plan").name.empty(); }));
   }
 
   /// Starts a trial that plans; returns when the node has its model.
@@ -104,7 +105,6 @@ TEST_F(MpcNodeHealthTest, TellsHowFarTheGoalIsAndHowWrongTheLastPredictionWas) {
 }
 
 TEST_F(MpcNodeHealthTest, ReportsCameraTorqueAndPlansOfATrial) {
-  ASSERT_TRUE(waitUntil([&] { return !diagnostics_.messages.empty(); }));
   beginPlanning(20, 0.0);
   show(20);
   expectEnd(State::SUCCEEDED);
