@@ -21,7 +21,6 @@ constexpr double kRounding = 1e-12;    // relative error of a variance in decomp
 constexpr int kMaxIterations = 40;
 constexpr double kInitialNoise = 0.3;  // sigma, if the outputs have standard deviation 1
 constexpr double kJitter = 1e-8;       // added to the variance of the noise
-constexpr int kMaxFurtherSamples = 2;  // by which f may look back further than model/order
 constexpr double kRidge = 1e-3;        // of the linear mean, per sample
 constexpr int kOutlierRounds = 2;
 constexpr double kOutlier = 12.0;               // squared error of an outlier / median
@@ -102,7 +101,6 @@ struct DenseGp {
   Eigen::MatrixXd slope;    // of the linear mean function, for inputs of standard deviation 1
   Eigen::MatrixXd outputs;  // what the linear mean does not explain, of standard deviation 1
   Eigen::VectorXd p;        // hyper-parameters, see negativeLogLikelihood()
-  double criterion = 0.0;   // Bayesian information criterion / 2; the lower the better
 };
 
 /// Fits the linear mean by ridge regression, which leaves the mean of the outputs alone, and the
@@ -136,15 +134,9 @@ DenseGp fitDense(const Eigen::MatrixXd& regressors, const Eigen::MatrixXd& chang
     check();
     return true;
   };
-  const SolverResult result =
-      minimise(negativeLogLikelihood(columnsOf(inputs, drawn), columnsOf(gp.outputs, drawn)), start,
-               options);
-  gp.p = result.x;
-  const auto count = static_cast<double>(drawn.size());
-  const auto num_params = static_cast<double>(gp.p.size() + gp.slope.size());
-  const auto all = static_cast<double>(N);
-  gp.criterion = all / count * result.cost + all * gp.output_spread.array().log().sum() +
-                 0.5 * num_params * std::log(all * static_cast<double>(changes.rows()));
+  gp.p = minimise(negativeLogLikelihood(columnsOf(inputs, drawn), columnsOf(gp.outputs, drawn)),
+                  start, options)
+             .x;
   return gp;
 }
 
@@ -160,10 +152,15 @@ Transitions transitionsOf(const PredictionModel<double>& f, const Eigen::MatrixX
   Eigen::Index i = 0;
   for (const Segment& segment : data.segments()) {
     for (Eigen::Index t = segment.begin + n - 1; t + 1 < segment.begin + segment.size; ++t, ++i) {
-      for (Eigen::Index lag = 0; lag < n; ++lag) {  // eq. (2)
-        auto h = out.regressors.col(i).segment(lag * (dim + motors), dim + motors);
-        h.head(dim) = Z.col(t - lag);
-        h.tail(motors) = data.torques().col(t - lag).cwiseQuotient(f.maxTorque());
+      Eigen::Index row = 0;
+      for (int lag = 0; lag < f.order(); ++lag) {  // eq. (2)
+        if (lag < f.numFeatures()) {
+          out.regressors.col(i).segment(row, dim) = Z.col(t - lag);
+          row += dim;
+        }
+        out.regressors.col(i).segment(row, motors) =
+            data.torques().col(t - lag).cwiseQuotient(f.maxTorque());
+        row += motors;
       }
       out.changes.col(i) = Z.col(t + 1) - Z.col(t);
     }
@@ -204,22 +201,6 @@ DifferentiableFunction negativeLogLikelihood(const Eigen::MatrixXd& inputs,
            kScalePrior * d_scales.squaredNorm() +
            kSizePrior * (d_size * d_size + d_noise * d_noise);
   };
-}
-
-int selectOrder(const Transitions& longest, Eigen::Index num_rows, int min_order,
-                std::mt19937_64* rng, const std::function<void()>& check) {
-  const std::mt19937_64 same = *rng;  // all orders explain the same transitions
-  int best_order = min_order;
-  double least = std::numeric_limits<double>::infinity();
-  for (int order = min_order; order * num_rows <= longest.regressors.rows(); ++order) {
-    *rng = same;
-    const DenseGp gp =
-        fitDense(longest.regressors.topRows(order * num_rows), longest.changes, rng, check);
-    if (!(gp.criterion < least)) continue;
-    least = gp.criterion;
-    best_order = order;
-  }
-  return best_order;
 }
 
 Eigen::VectorXd fitGp(const Transitions& transitions, std::mt19937_64* rng,
@@ -284,28 +265,15 @@ Transitions withoutOutliers(const Transitions& transitions, std::mt19937_64* rng
   return kept;
 }
 
-void replaceByGp(const Eigen::MatrixXd& Z, const DataSet& data, std::mt19937_64* rng,
-                 const std::function<void()>& check, ModelOptions* model, Eigen::VectorXd* theta) {
-  const int motors = data.torqueDim();
-  const Eigen::Index num_rows = model->feature_dim + motors;  // of each sample in the regressor
-  ModelOptions longest = *model;
-  longest.order += kMaxFurtherSamples;
-  const auto transitionsOfOrder = [&] {
-    return transitionsOf(PredictionModel<double>(longest, motors), Z, data);
-  };
-  Transitions transitions = transitionsOfOrder();
-  while (transitions.changes.cols() == 0 && longest.order > model->order) {
-    --longest.order;  // all segments are shorter
-    transitions = transitionsOfOrder();
-  }
-  transitions = withoutOutliers(transitions, rng, check);
-  model->order = selectOrder(transitions, num_rows, model->order, rng, check);
-  transitions.regressors.conservativeResize(model->order * num_rows, Eigen::NoChange);
+Eigen::VectorXd replaceByGp(const ModelOptions& model, const Eigen::VectorXd& theta,
+                            const Eigen::MatrixXd& Z, const DataSet& data, std::mt19937_64* rng,
+                            const std::function<void()>& check) {
+  const PredictionModel<double> f(model, data.torqueDim());
+  const Transitions transitions = withoutOutliers(transitionsOf(f, Z, data), rng, check);
   const Eigen::VectorXd theta_p = fitGp(transitions, rng, check);
-  const Eigen::Index num_others = Networks<double>(*model, motors).numOfAutoEncoder();
-  const Eigen::VectorXd auto_encoder = theta->head(num_others);
-  theta->resize(num_others + theta_p.size());
-  *theta << auto_encoder, theta_p;
+  Eigen::VectorXd out(theta.size() + theta_p.size());
+  out << theta, theta_p;
+  return out;
 }
 
 }  // namespace ddm

@@ -42,19 +42,6 @@ Transitions transitionsOf(const PredictionModel<double>& f, const Eigen::MatrixX
 DifferentiableFunction negativeLogLikelihood(const Eigen::MatrixXd& inputs,
                                              const Eigen::MatrixXd& outputs);
 
-/// Selects the order of f by the marginal likelihood of the same transitions, with a penalty for
-/// each parameter (Bayesian information criterion). The likelihood of at most 400 transitions, which
-/// are drawn at random, is extrapolated to all transitions: the more transitions there are, the more
-/// inputs f may have. If the images of the camera are d samples late, the result is usually d + 1 or
-/// more, because f then needs torques that are d samples older.
-/// @param longest    transitions of the largest order; their first rows are those of lower orders
-/// @param num_rows   rows of each sample in the regressor: feature_dim + torque_dim
-/// @param min_order  smallest order
-/// @param rng        draws the transitions
-/// @param check      called after each iteration; may throw to cancel the fit
-int selectOrder(const Transitions& longest, Eigen::Index num_rows, int min_order,
-                std::mt19937_64* rng, const std::function<void()>& check);
-
 /// Fits a sparse Gaussian process with a linear mean function, which ridge regression computes
 /// first. The hyper-parameters of the remaining errors maximise the marginal likelihood of at most
 /// 400 transitions, which are drawn at random. A pivoted Cholesky decomposition of the kernel
@@ -85,11 +72,12 @@ Transitions withoutOutliers(const Transitions& transitions, std::mt19937_64* rng
 /// features. On held-out trials of the pendulum, two links and the cart-pole, the Gaussian process
 /// predicts the same features with half to four fifths of the network's error, for few and for many
 /// samples.
+/// @param theta  parameters of the auto-encoder
 /// @param Z      features of all samples                                 [feature_dim x >= N]
 /// @param check  called after each iteration; may throw to cancel the fit
-/// @param model  in and out: model/order may increase, see selectOrder()
-/// @param theta  in: parameters of the networks; out: of the auto-encoder and the Gaussian process
-void replaceByGp(const Eigen::MatrixXd& Z, const DataSet& data, std::mt19937_64* rng,
-                 const std::function<void()>& check, ModelOptions* model, Eigen::VectorXd* theta);
+/// @return       parameters of the auto-encoder and the Gaussian process
+Eigen::VectorXd replaceByGp(const ModelOptions& model, const Eigen::VectorXd& theta,
+                            const Eigen::MatrixXd& Z, const DataSet& data, std::mt19937_64* rng,
+                            const std::function<void()>& check);
 
 }  // namespace ddm

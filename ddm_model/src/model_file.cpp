@@ -16,7 +16,7 @@ namespace {
 
 constexpr char kMagic[] = "DDMMODEL";
 constexpr size_t kMagicSize = sizeof(kMagic) - 1;
-constexpr std::uint32_t kVersion = 8;
+constexpr std::uint32_t kVersion = 9;
 constexpr size_t kHeaderSize = kMagicSize + 4 + 8 + 4;
 
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "model files are little-endian");

@@ -31,9 +31,11 @@ void RollOut<Scalar>::fillRegressors(const Eigen::Ref<const Matrix>& Z,
     Scalar* h = &regressors_.coeffRef(0, i);
     for (int lag = 0; lag < f_.order(); ++lag) {  // eq. (2)
       const Eigen::Index frame = targets[i] + step - 1 - lag;
-      const Scalar* z =
-          lag < step ? &predicted_[step - 1 - lag].coeffRef(0, i) : &Z.coeffRef(0, frame);
-      h = std::copy_n(z, f_.featureDim(), h);
+      if (lag < f_.numFeatures()) {
+        const Scalar* z =
+            lag < step ? &predicted_[step - 1 - lag].coeffRef(0, i) : &Z.coeffRef(0, frame);
+        h = std::copy_n(z, f_.featureDim(), h);
+      }
       for (int motor = 0; motor < f_.torqueDim(); ++motor) {
         const double u = U(motor, std::min(frame, last_torque)) / f_.maxTorque()[motor];
         *h++ = static_cast<Scalar>(u);
@@ -69,7 +71,7 @@ void RollOut<Scalar>::backward(const Scalar* theta_p, const Targets& targets, in
       } else if (d_Z != nullptr) {
         d_z = &d_Z->coeffRef(0, frame);
       }
-      for (int j = 0; j < f_.featureDim(); ++j, ++d_h) {
+      for (int j = 0; lag < f_.numFeatures() && j < f_.featureDim(); ++j, ++d_h) {
         if (d_z != nullptr) d_z[j] += *d_h;
       }
       for (int motor = 0; motor < f_.torqueDim(); ++motor, ++d_h) {

@@ -111,10 +111,9 @@ TrainingResult trainUnlessCancelled(const DataSet& data, const ModelOptions& mod
   Eigen::VectorXd theta = joined.thetas.front();
   if (model.predictor == "gp") {
     trained_model = joinedOptions(model, static_cast<int>(joined.thetas.size()));
-    theta = joinAutoEncoders(model, joined.thetas);
     std::mt19937_64 draw = randomStream({info.seed, info.trial}, StreamRole::kGpSamples);
-    replaceByGp(
-        joined.Z, data, &draw, [&progress] { progress.repeat(); }, &trained_model, &theta);
+    theta = replaceByGp(trained_model, joinAutoEncoders(model, joined.thetas), joined.Z, data,
+                        &draw, [&progress] { progress.repeat(); });
   }
   ModelInfo trained = info;
   trained.frames = static_cast<std::uint32_t>(data.numFrames());

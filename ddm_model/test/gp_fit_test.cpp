@@ -145,62 +145,26 @@ TEST(FitGp, TakesAnInputThatNeverChanges) {
   EXPECT_TRUE(fit(constant).allFinite());
 }
 
-/// A rate that a torque drives after `delay` samples, and another torque two samples before it a
-/// little. One feature, three samples in the regressor.
-Transitions lateBy(int delay, Eigen::Index count, double late_share = 0.0) {
-  const Eigen::MatrixXd u = randomMatrix(1, count + 4, 1);
-  Eigen::MatrixXd z = Eigen::MatrixXd::Zero(1, count + 4);
-  for (Eigen::Index t = 3; t + 1 < z.cols(); ++t) {
-    z(0, t + 1) = z(0, t) + 0.5 * (z(0, t) - z(0, t - 1)) + std::sin(u(0, t - delay)) +
-                  late_share * u(0, t - 2);
-  }
-  Transitions out{Eigen::MatrixXd(6, count), Eigen::MatrixXd(1, count)};
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const Eigen::Index t = i + 3;
-    out.regressors.col(i) << z(0, t), u(0, t), z(0, t) - z(0, t - 1), u(0, t - 1),
-        z(0, t - 1) - z(0, t - 2), u(0, t - 2);
-    out.changes(0, i) = z(0, t + 1) - z(0, t);
-  }
-  out.changes += 0.01 * randomMatrix(1, count, 2);
-  return out;
-}
-
-TEST(SelectOrder, FindsHowManySamplesTheImagesAreLate) {
-  for (int delay = 0; delay <= 2; ++delay) {
-    std::mt19937_64 rng(1);
-    const int order = selectOrder(lateBy(delay, 100), /*num_rows=*/2, /*min_order=*/2, &rng, [] {});
-    EXPECT_EQ(order, std::max(2, delay + 1)) << "delay " << delay;
-  }
-}
-
-TEST(SelectOrder, TakesASmallEffectForRealIfThereAreManyTransitions) {
-  for (const auto& [count, expected] : {std::pair(150, 2), {4000, 3}}) {
-    std::mt19937_64 rng(1);
-    const int order =
-        selectOrder(lateBy(0, count, 0.0045), /*num_rows=*/2, /*min_order=*/2, &rng, [] {});
-    EXPECT_EQ(order, expected) << count << " transitions";
-  }
-}
-
 TEST(Transitions, StayWithinSegments) {
   ModelOptions options;
-  options.order = 2;
+  options.order = 3;
   options.predictor = "gp";
   const PredictionModel<double> f(options, 1);
   DataSet data(2, 1);
-  for (int t = 0; t < 7; ++t) {
-    data.append(Image(4), Eigen::VectorXd::Constant(1, t), /*new_segment=*/t == 0 || t == 3);
+  for (int t = 0; t < 9; ++t) {
+    data.append(Image(4), Eigen::VectorXd::Constant(1, t), /*new_segment=*/t == 0 || t == 4);
   }
-  Eigen::MatrixXd Z(2, 7);
-  Z.row(0) << 0, 1, 4, 100, 101, 104, 109;
+  Eigen::MatrixXd Z(2, 9);
+  Z.row(0) << -3, 0, 1, 4, 99, 100, 101, 104, 109;
   Z.row(1) = -Z.row(0);
   const Transitions found = transitionsOf(f, Z, data);
   ASSERT_EQ(found.changes.cols(), 3);  // 1 -> 2, 4 -> 5, 5 -> 6
   EXPECT_EQ(found.changes.row(0), Eigen::RowVector3d(3, 3, 5));
   EXPECT_EQ(found.regressors.row(0), Eigen::RowVector3d(1, 101, 104)) << "z_t";
-  EXPECT_TRUE(found.regressors.row(2).isApprox(Eigen::RowVector3d(1, 4, 5) / 6.0)) << "u_t";
+  EXPECT_TRUE(found.regressors.row(2).isApprox(Eigen::RowVector3d(2, 6, 7) / 6.0)) << "u_t";
   EXPECT_EQ(found.regressors.row(3), Eigen::RowVector3d(1, 1, 3)) << "z_t - z_{t-1}";
-  EXPECT_TRUE(found.regressors.row(5).isApprox(Eigen::RowVector3d(0, 3, 4) / 6.0)) << "u_{t-1}";
+  EXPECT_TRUE(found.regressors.row(5).isApprox(Eigen::RowVector3d(1, 5, 6) / 6.0)) << "u_{t-1}";
+  EXPECT_TRUE(found.regressors.row(6).isApprox(Eigen::RowVector3d(0, 4, 5) / 6.0)) << "u_{t-2}";
 }
 
 }  // namespace

@@ -111,18 +111,16 @@ TEST(PredictionModel, TakesItsRegressorNewestFirstWithEachTorqueAfterItsFeature)
   options.order = 4;
   options.predictor = "gp";
   const PredictionModel<double> f(options, /*torque_dim=*/2);
-  ASSERT_EQ(f.regressorDim(), 4 * (3 + 2));
+  ASSERT_EQ(f.regressorDim(), 2 * 3 + 4 * 2);
   const Eigen::VectorXd theta_p = Eigen::VectorXd::Zero(f.network().numParams());
-  Eigen::MatrixXd h = Eigen::VectorXd::LinSpaced(20, 0.0, 19.0).array().cube().matrix();
+  Eigen::MatrixXd h = Eigen::VectorXd::LinSpaced(14, 0.0, 13.0).array().cube().matrix();
   const Eigen::MatrixXd newest = h.topRows(3);
   Eigen::MatrixXd expected = h;
-  for (int lag = 1; lag < 4; ++lag) {
-    expected.middleRows(5 * lag, 3) = h.middleRows(5 * lag - 5, 3) - h.middleRows(5 * lag, 3);
-  }
+  expected.middleRows(5, 3) = newest - h.middleRows(5, 3);
   Eigen::MatrixXd predicted(3, 1);
   Mlp<double>::Tape tape;
   f.forward(theta_p.data(), h, &tape, predicted);
-  EXPECT_EQ(h, expected) << "differences of features, and torques as they were";
+  EXPECT_EQ(h, expected) << "the last change of the feature, and torques as they were";
   EXPECT_EQ(predicted, newest) << "a network of zeros changes nothing";
 }
 

@@ -67,9 +67,8 @@ JointObjective<double>::Value slowValue(const Networks<double>& nets,
         Eigen::VectorXd h(0);
         for (int lag = 0; lag < n; ++lag) {
           Eigen::VectorXd feature = path[path.size() - 1 - static_cast<size_t>(lag)];
-          if (form.featureDifferences() && lag > 0) {
-            feature = path[path.size() - static_cast<size_t>(lag)] - feature;
-          }
+          if (form.featureDifferences() && lag == 1) feature = path.back() - feature;
+          if (form.featureDifferences() && lag > 1) feature.resize(0);
           const Eigen::VectorXd torque =
               data.torques.col(t + j - 1 - lag).cwiseQuotient(nets.prediction_model.maxTorque());
           Eigen::VectorXd longer(h.size() + feature.size() + torque.size());

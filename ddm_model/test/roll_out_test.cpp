@@ -36,12 +36,18 @@ class RollOutOfEachForm : public ::testing::TestWithParam<std::tuple<int, const 
     Eigen::MatrixXd path = Z_;
     for (Eigen::Index frame = target; frame < target + kSteps; ++frame) {
       Eigen::VectorXd h(f_.regressorDim());
+      Eigen::Index row = 0;
       for (int lag = 0; lag < f_.order(); ++lag) {
-        Eigen::VectorXd z = path.col(frame - 1 - lag);
-        if (options().featureDifferences() && lag > 0) z = path.col(frame - lag) - z;
-        h.segment(4 * lag, 2) = z;
+        Eigen::Vector2d z = path.col(frame - 1 - lag);
+        const bool gp = options().featureDifferences();
+        if (gp && lag > 0) z = path.col(frame - lag) - z;
         const Eigen::Vector2d u = U_.col(frame - 1 - lag);
-        h.segment(4 * lag + 2, 2) << u[0] / 1.5, u[1] / 0.5;
+        if (!gp || lag < 2) {
+          h.segment<2>(row) = z;
+          row += 2;
+        }
+        h.segment<2>(row) << u[0] / 1.5, u[1] / 0.5;
+        row += 2;
       }
       Mlp<double>::Tape tape;
       f_.network().forward(theta_p_.data(), h, &tape);
@@ -116,7 +122,7 @@ class RollOutOfAGaussianProcess : public ::testing::Test {
  protected:
   static ModelOptions options() {
     ModelOptions options;
-    options.order = 2;
+    options.order = 3;
     options.max_torque = {1.5, 0.5};
     options.predictor = "gp";
     return options;
@@ -131,17 +137,18 @@ class RollOutOfAGaussianProcess : public ::testing::Test {
 TEST_F(RollOutOfAGaussianProcess, EqualsTheFormula) {
   RollOut<double> roll_out(f_);
   roll_out.forward(theta_p_.data(), Z_, U_, targets(), kSteps);
-  const Eigen::Map<const Eigen::VectorXd> inverse_scales(theta_p_.data(), 8);
-  const Eigen::Map<const Eigen::MatrixXd> slope(theta_p_.data() + 8, 2, 8);
-  const Eigen::Map<const Eigen::Vector2d> bias(theta_p_.data() + 24);
-  const Eigen::Map<const Eigen::MatrixXd> centres(theta_p_.data() + 26, 8, 5);
-  const Eigen::Map<const Eigen::MatrixXd> weights(theta_p_.data() + 66, 2, 5);
+  const Eigen::Map<const Eigen::VectorXd> inverse_scales(theta_p_.data(), 10);
+  const Eigen::Map<const Eigen::MatrixXd> slope(theta_p_.data() + 10, 2, 10);
+  const Eigen::Map<const Eigen::Vector2d> bias(theta_p_.data() + 30);
+  const Eigen::Map<const Eigen::MatrixXd> centres(theta_p_.data() + 32, 10, 5);
+  const Eigen::Map<const Eigen::MatrixXd> weights(theta_p_.data() + 82, 2, 5);
   for (int i = 0; i < 3; ++i) {
     Eigen::MatrixXd path = Z_;
     for (Eigen::Index t = kTargets[i]; t < kTargets[i] + kSteps; ++t) {
-      Eigen::VectorXd h(8);
+      Eigen::VectorXd h(10);
       h << path.col(t - 1), U_.col(t - 1).cwiseQuotient(f_.maxTorque()),
-          path.col(t - 1) - path.col(t - 2), U_.col(t - 2).cwiseQuotient(f_.maxTorque());
+          path.col(t - 1) - path.col(t - 2), U_.col(t - 2).cwiseQuotient(f_.maxTorque()),
+          U_.col(t - 3).cwiseQuotient(f_.maxTorque());
       Eigen::VectorXd change = slope * h + bias;
       for (int centre = 0; centre < 5; ++centre) {
         const Eigen::VectorXd distance = h.cwiseProduct(inverse_scales) - centres.col(centre);

@@ -13,9 +13,10 @@ struct ModelOptions {
   double blur = 0.0;                  ///< std of the Gaussian blur of all images [pixels]
   int pca_dim = 50;                   ///< principal components; input of the encoder [-]
   int feature_dim = 2;                ///< dim z [-]
-  int order = 2;                      ///< n, past features and torques in the input of f [-]
+  /// n, past torques in the input of f; so many features, too, or with predictor gp at most two [-]
+  int order = 2;
   std::vector<int> encoder_widths = {25, 12, 6};  ///< hidden layers of g^-1; g mirrors them
-  /// "network"; "gp": f sees differences of features and predicts the change of the feature, and
+  /// "network"; "gp": f sees the last change of the feature and predicts the next one, and
   /// after the training a Gaussian process replaces the network in f.
   std::string predictor = "network";
   std::vector<int> predictor_widths = {4};  ///< hidden layers of the network in f
@@ -34,7 +35,7 @@ struct ModelOptions {
     visitor("predictor_widths", predictor_widths);
     visitor("max_torque", max_torque);
   }
-  /// @return whether past features enter f as differences, and f predicts the change of the feature
+  /// @return whether f sees the last change of the feature and predicts the next one
   bool featureDifferences() const { return predictor == "gp"; }
   /// @return hidden layers of g, feature first
   std::vector<int> decoderWidths() const {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <optional>
 #include <random>
 #include <vector>
@@ -22,8 +23,10 @@ namespace ddm {
 /// with u in units of max_torque. RollOut builds h_n. The output layer of the network is linear.
 /// Deviations with model/predictor gp:
 ///  * f is z_t plus the network, which then learns only the change of z.
-///  * The network sees z_t, z_t - z_{t-1}, z_{t-1} - z_{t-2}, ... instead of the features, because
-///    features of successive images are almost equal and only their differences show the motion.
+///  * h_n = [z_t, u_t, z_t - z_{t-1}, u_{t-1}, u_{t-2}, ..., u_{t-n+1}]. Features of successive images
+///    are almost equal, and only their difference shows the motion. The motion depends on n torques
+///    if the images are late: with images that are d samples late, d + 2 torques have an effect that
+///    the two features do not show yet.
 ///  * In a trained model, the mean of a Gaussian process replaces the network.
 template <class Scalar>
 class PredictionModel {
@@ -37,7 +40,7 @@ class PredictionModel {
       : options_(options),
         torque_dim_(torque_dim),
         max_torque_(perMotor(options.max_torque, torque_dim, "model/max_torque")),
-        network_(layerWidths(options.order * (options.feature_dim + torque_dim),
+        network_(layerWidths(numFeatures() * options.feature_dim + options.order * torque_dim,
                              options.predictor_widths, options.feature_dim),
                  Mlp<Scalar>::Output::kLinear) {
     if (num_centres > 0) gp_.emplace(regressorDim(), featureDim(), num_centres);
@@ -45,11 +48,13 @@ class PredictionModel {
 
   int featureDim() const { return options_.feature_dim; }
   int torqueDim() const { return torque_dim_; }
-  /// @return n
+  /// @return n, number of torques in h_n
   int order() const { return options_.order; }
+  /// @return number of features in h_n; at most n
+  int numFeatures() const { return options_.featureDifferences() ? std::min(order(), 2) : order(); }
   /// @return scale of the torques: f sees u / maxTorque() [N m]  [torque_dim]
   const Eigen::VectorXd& maxTorque() const { return max_torque_; }
-  /// @return n (feature_dim + torque_dim), the size of h_n
+  /// @return size of h_n
   int regressorDim() const { return network_.inputDim(); }
 
   /// @return the network within f
@@ -62,11 +67,10 @@ class PredictionModel {
     if (gp_) gp_->fixParameters(theta_p);
   }
 
-  /// Replaces past features in regressors by differences, if f sees differences.
+  /// Replaces the previous feature in regressors by the difference, if f sees the difference.
   void toDifferences(Eigen::Ref<Matrix> regressors) const {
-    for (int lag = options_.featureDifferences() ? order() - 1 : 0; lag > 0; --lag) {
-      features(lag, regressors) = features(lag - 1, regressors) - features(lag, regressors);
-    }
+    if (!seesDifference()) return;
+    features(1, regressors) = features(0, regressors) - features(1, regressors);
   }
 
   /// @param theta_p     parameters of f                                                      [P_f]
@@ -99,14 +103,15 @@ class PredictionModel {
       network_.backward(theta_p, tape, d_predicted, d_theta_p, d_regressors);
     }
     auto d_h = d_regressors->leftCols(d_predicted.cols());
-    for (int lag = 1; lag < (options_.featureDifferences() ? order() : 1); ++lag) {
-      features(lag - 1, d_h) += features(lag, d_h);
-      features(lag, d_h) *= Scalar(-1);
+    if (seesDifference()) {
+      features(0, d_h) += features(1, d_h);
+      features(1, d_h) *= Scalar(-1);
     }
     if (options_.featureDifferences()) features(0, d_h) += d_predicted;
   }
 
  private:
+  bool seesDifference() const { return options_.featureDifferences() && numFeatures() > 1; }
   /// @return rows of the feature `lag` steps before the current one
   template <class Regressors>
   auto features(int lag, Regressors& regressors) const {

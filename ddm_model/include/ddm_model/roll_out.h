@@ -12,7 +12,7 @@ namespace ddm {
 /// Rollouts for training, planning and reports. Given are the features up to the sample before a
 /// target. The features of the target and of the samples after it are predicted,
 ///
-///   z_{t+1} = f(h_n) + offset,   h_n = [z_t, u_t, ..., z_{t-n+1}, u_{t-n+1}]            eq. (2)
+///   z_{t+1} = f(h_n) + offset                                                          eq. (2)
 ///
 /// where h_n has predicted features from the target on, and true features before it. Several
 /// targets are predicted at once, one per column. The object stores the forward pass for

@@ -7,7 +7,7 @@ import zlib
 import numpy as np
 
 MAGIC, HEADER = b"DDMMODEL", "<IQI"  # after MAGIC: version, size of the content [bytes], CRC-32
-VERSION = 8  # version of the file format
+VERSION = 9  # version of the file format
 MAX_GAIN = 4.0  # largest factor that changes the brightness of an image, as in pca.cpp
 
 
@@ -105,8 +105,8 @@ def preprocessed(arrays, y):
 class Model:
     """A deep dynamical model (paper, eq. 3). Images, features and torques have one sample in each row.
 
-    options: the block `model` of the configuration. image_size: side of an image [pixels]. torque_dim: number of
-    motors.
+    options: the block `model` of the configuration. num_features: number of features in the input of f. image_size: side
+    of an image [pixels]. torque_dim: number of motors.
     info: id, seed, trial, frames (number of samples learned from), v_r, v_p, feature_spread, and config, the YAML text
     of the configuration that the model was trained with.
     arrays: all arrays that the model computes with, under the names in doc/reference/programs.md.
@@ -117,6 +117,8 @@ class Model:
         """data: content of a model file (bytes). Raises ModelFileError."""
         reader = _Reader(_content(data))
         self.options = _read_options(reader)
+        n = self.options["order"]
+        self.num_features = min(n, 2) if self.options["predictor"] == "gp" else n
         self.image_size, self.torque_dim = int(reader.number("<i4")), int(reader.number("<i4"))
         self.info = {"id": "%08x" % zlib.crc32(data)}
         for name, kind in (("seed", "<u8"), ("trial", "<u4"), ("frames", "<u4")):
@@ -126,7 +128,7 @@ class Model:
         support_states = reader.array("<f4")
         self.info["config"] = reader.text()
         self.arrays = self._read_arrays(reader)
-        n, dim = self.options["order"], self.options["feature_dim"]
+        dim = self.options["feature_dim"]
         self.support_states = support_states.reshape(-1, n * dim + (n - 1) * self.torque_dim)[:, :dim]
         goal = reader.array("u1")
         self.goal_feature = None
@@ -151,7 +153,7 @@ class Model:
         theta, n, dim = reader.array("<f8"), options["order"], options["feature_dim"]
         networks = [("encoder", [options["pca_dim"], *options["encoder_widths"], dim]),
                     ("decoder", [dim, *options["decoder_widths"], options["pca_dim"]])]
-        num_inputs = n * (dim + self.torque_dim)
+        num_inputs = self.num_features * dim + n * self.torque_dim
         if options["predictor"] == "network":
             networks.append(("f", [num_inputs, *options["predictor_widths"], dim]))
         needed = sum((inputs + 1) * outputs for _, widths in networks for inputs, outputs in zip(widths, widths[1:]))
@@ -209,7 +211,8 @@ class Model:
         return y.reshape(-1, self.image_size, self.image_size)
 
     def predict(self, features, torques):
-        """Prediction model: z_{t+1} = f(z_t, u_t, ..., z_{t-n+1}, u_{t-n+1}), eq. (2).
+        """Prediction model: z_{t+1} = f(z_t, u_t, ..., z_{t-n+1}, u_{t-n+1}), eq. (2). With model/predictor gp, features
+        before z_{t-1} have no effect.
 
         features: z_{t-n+1} ... z_t, oldest first  [... x n x feature_dim]. torques: u_{t-n+1} ... u_t, oldest first
         [... x n x torque_dim, N m]. Returns z_{t+1}  [... x feature_dim]. Raises ValueError if the number of
@@ -220,13 +223,15 @@ class Model:
         if features.shape[-2] != n or torques.shape[-2] != n:
             raise ValueError("the last %d features and %d torques predict the next feature, got %d and %d" % (
                 n, n, features.shape[-2], torques.shape[-2]))
-        gp = self.options["predictor"] == "gp"
-        past = features[..., ::-1, :].copy()
-        if gp:
-            past[..., 1:, :] = features[..., :0:-1, :] - features[..., -2::-1, :]
-        h = np.concatenate([past, torques[..., ::-1, :] / self.arrays["max_torque"]], axis=-1)
-        h = h.reshape(h.shape[:-2] + (-1,))
-        return features[..., -1, :] + self._gp(h) if gp else self._network("f", h)
+        gp, last = self.options["predictor"] == "gp", features[..., -1, :]
+        parts = []
+        for lag in range(n):
+            if lag < self.num_features:
+                past = features[..., n - 1 - lag, :]
+                parts.append(last - past if gp and lag > 0 else past)
+            parts.append(torques[..., n - 1 - lag, :] / self.arrays["max_torque"])
+        h = np.concatenate(parts, axis=-1)
+        return last + self._gp(h) if gp else self._network("f", h)
 
     def roll_out(self, features, torques):
         """Rollout: predicts K features, each from the features before it.
