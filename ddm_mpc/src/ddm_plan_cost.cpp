@@ -13,6 +13,13 @@
 #include <vector>
 
 namespace ddm {
+namespace {
+
+// Weight of a change of torque / lambda. Without it, torques at the goal alternate more and more in
+// sign: 172 of 200 models of the pendulum after 100 images reach the goal instead of 185.
+constexpr double kChangeWeight = 10.0;
+
+}  // namespace
 
 DdmPlanCost::DdmPlanCost(const Ddm& model, int horizon, double control_weight, Terms terms)
     : f_(model.predictionModel()),
@@ -74,24 +81,32 @@ Eigen::VectorXd DdmPlanCost::featureAfter(int num_steps) const {
   return roll_out_.predicted(num_steps - 1);
 }
 
-/// @param z    feature to which the step leads                                  [feature_dim]
-/// @param u    torque of the step [N m]                                          [torque_dim]
-/// @param d_z  out: derivative by z; null: skip                                 [feature_dim]
-/// @param d_u  out: derivative by u [1/(N m)]; null: skip                        [torque_dim]
+/// @param z          feature to which the step leads                            [feature_dim]
+/// @param torques    past and planned torques, as in torques_ [N m]
+/// @param column     column of the torque of the step
+/// @param d_z        out: derivative by z; null: skip                           [feature_dim]
+/// @param d_torques  the derivative by `torques` is ADDED to it [1/(N m)]; null: skip
 double DdmPlanCost::stepCost(const Eigen::Ref<const Eigen::VectorXd>& z,
-                             const Eigen::Ref<const Eigen::VectorXd>& u, Eigen::VectorXd* d_z,
-                             Eigen::VectorXd* d_u) const {
-  const double effort = (control_weight_ * u.array().square()).sum();
-  if (d_u != nullptr) *d_u = 2.0 * control_weight_ * u.array();
+                             const Eigen::MatrixXd& torques, Eigen::Index column,
+                             Eigen::VectorXd* d_z, Eigen::MatrixXd* d_torques) const {
+  const Eigen::Index before = std::max<Eigen::Index>(column - 1, 0);
+  const auto u = torques.col(column).array();
   const SaturatingCost* saturating = saturatingCost();
   if (saturating == nullptr) {  // eq. (9)
     if (d_z != nullptr) *d_z = 2.0 * (z - goal_feature_);
-    return (z - goal_feature_).squaredNorm() + effort;
+    if (d_torques != nullptr) d_torques->col(column).array() += 2.0 * control_weight_ * u;
+    return (z - goal_feature_).squaredNorm() + (control_weight_ * u.square()).sum();
   }
+  const Eigen::ArrayXd change = u - torques.col(before).array();
+  const double effort = (control_weight_ * (u.square() + kChangeWeight * change.square())).sum();
   const double near = 1.0 - saturating->evaluate(z, d_z);
   const double gentle = std::exp(-effort);
   if (d_z != nullptr) *d_z *= gentle;
-  if (d_u != nullptr) *d_u *= near * gentle;
+  if (d_torques != nullptr) {
+    const Eigen::ArrayXd factor = 2.0 * near * gentle * control_weight_;
+    d_torques->col(column).array() += factor * (u + kChangeWeight * change);
+    d_torques->col(before).array() -= factor * kChangeWeight * change;
+  }
   return 1.0 - near * gentle;
 }
 
@@ -100,7 +115,7 @@ double DdmPlanCost::evaluate(const Eigen::Ref<const Eigen::MatrixXd>& U, Eigen::
   rollOut(U, horizon_);
   double cost = 0.0;
   for (int step = 0; step < horizon_; ++step) {
-    cost += stepCost(roll_out_.predicted(step), U.col(step), nullptr, nullptr);
+    cost += stepCost(roll_out_.predicted(step), torques_, f_.order() - 1 + step, nullptr, nullptr);
   }
   Eigen::VectorXd d_last, d_before;
   const auto* cost_to_go = std::get_if<CostToGo>(&terms_);
@@ -119,9 +134,8 @@ double DdmPlanCost::evaluate(const Eigen::Ref<const Eigen::MatrixXd>& U, Eigen::
   const Eigen::Index target = f_.order();
   const RollOut<double>::Targets targets(&target, 1);
   for (int step = horizon_ - 1; step >= 0; --step) {
-    stepCost(roll_out_.predicted(step), U.col(step), &d_step_, &d_torque_);
+    stepCost(roll_out_.predicted(step), torques_, f_.order() - 1 + step, &d_step_, &d_torques_);
     roll_out_.dPredicted(step) += d_step_;
-    d_torques_.col(f_.order() - 1 + step) += d_torque_;
     roll_out_.backward(theta_p_, targets, step, nullptr, nullptr, &d_torques_);
   }
   *d_U = d_torques_.rightCols(horizon_);
@@ -157,8 +171,8 @@ std::vector<DdmPlanCost::HeldPlan> DdmPlanCost::continued(const std::vector<Held
     features.leftCols(order) = plan.features;
     for (int step = 0; step < num_steps; ++step) {
       features.col(order + step) = search_.predicted(step).col(i);
-      plan.cost += stepCost(search_.predicted(step).col(i),
-                            plan.torques.col(order - 1 + begin + step), nullptr, nullptr);
+      plan.cost += stepCost(search_.predicted(step).col(i), plan.torques, order - 1 + begin + step,
+                            nullptr, nullptr);
     }
     plan.features = features.rightCols(order);
     plan.total = plan.cost;

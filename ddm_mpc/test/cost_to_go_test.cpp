@@ -130,15 +130,17 @@ TEST_F(PlansWithCostToGo, TheGradientMatchesFiniteDifferencesFarFromTheGoalAndNe
   EXPECT_TRUE(testing::gradientMatches(f, u, 1e-5));
 }
 
-TEST(PlanWithCostToGo, WeighsEachTorqueAtTheGoalByItsShareOfTheLargest) {
+TEST(PlanWithCostToGo, WeighsEachTorqueAndItsChangeAtTheGoalByTheirShareOfTheLargest) {
   const Eigen::Vector2d max_torque(2.0, 0.5);
   const Ddm model = pushedModel(horseshoe(), {2.0, 0.5});
   Eigen::MatrixXd U(2, 1);
   U << 1.0, 0.5;  // half of what there is, and all
   CostToGo time(model, max_torque);
-  const auto costOfStep = [&](double control_weight, double x) {
+  const auto costOfStep = [&](double control_weight, double x, const Eigen::Vector2d& before) {
     const Eigen::Vector2d z(x, 0.0), goal(0.1, 0.0);
     History history(2, 2, 2);
+    history.observe(z);
+    history.apply(before);
     history.observe(z);
     DdmPlanCost cost(model, 1, control_weight, time);
     cost.setProblem(history, goal);
@@ -147,10 +149,15 @@ TEST(PlanWithCostToGo, WeighsEachTorqueAtTheGoalByItsShareOfTheLargest) {
     return whole - time.value(cost.predictedFeatures().col(1), z, nullptr, nullptr);
   };
   constexpr double kWidth = CostToGo::kWidthInPlan;
-  const double effort = 0.3 * (0.25 + 1.0) / (2.0 * kWidth * kWidth);
-  EXPECT_LT(costOfStep(0.0, 0.1), 0.7) << "at the goal, from which these torques move the features";
-  EXPECT_NEAR(1.0 - costOfStep(0.3, 0.1), (1.0 - costOfStep(0.0, 0.1)) * std::exp(-effort), 1e-12);
-  EXPECT_NEAR(costOfStep(0.3, 1.0), costOfStep(0.0, 1.0), 1e-3) << "far from it";
+  constexpr double kWeight = 0.01;
+  const double effort = kWeight * (0.25 + 1.0) / (2.0 * kWidth * kWidth);
+  for (const Eigen::Vector2d& before : {Eigen::Vector2d(U), Eigen::Vector2d(0.0, 0.0)}) {
+    const double free = costOfStep(0.0, 0.1, before);
+    EXPECT_LT(free, 0.7) << "at the goal, from which these torques move the features";
+    const double sum = before.isZero() ? effort + 10.0 * effort : effort;
+    EXPECT_NEAR(1.0 - costOfStep(kWeight, 0.1, before), (1.0 - free) * std::exp(-sum), 1e-12);
+    EXPECT_NEAR(costOfStep(kWeight, 1.0, before), costOfStep(0.0, 1.0, before), 1e-3) << "far";
+  }
 }
 
 /// The features of an arm that is folded to the wrong side can be so near to those of the goal.
@@ -214,9 +221,10 @@ TEST_F(PlansWithSaturatingCost, TheCostIsTheSumOfTheStepsAndNothingComesAfterThe
   const double cost = near_.evaluate(U, nullptr);
   SaturatingCost step(model_, Eigen::Vector2d::Ones(), 0.5);
   step.setGoal(goal);
-  const double gentle = std::exp(-0.1 * 2.0 / (2.0 * 0.5 * 0.5));
   double expected = 0.0;
   for (int k = 1; k <= kLong; ++k) {
+    const double squares = k == 1 ? 2.0 + 10.0 * 2.0 : 2.0;  // the torque before the plan is 0
+    const double gentle = std::exp(-0.1 * squares / (2.0 * 0.5 * 0.5));
     const double near = 1.0 - step.evaluate(near_.predictedFeatures().col(k), nullptr);
     expected += 1.0 - near * gentle;
   }

@@ -26,10 +26,12 @@ namespace ddm {
 /// state has a cost-to-go, too,
 ///
 ///   J(U) = sum_{k=1}^{K} (1 - exp(-c_k / (2 w^2))) + V(x_K)
-///   c_k  = |z_k - z_ref|^2 / s^2 + lambda |u_{k-1} / max_torque|^2
+///   c_k  = |z_k - z_ref|^2 / s^2 + lambda (|u_{k-1}|^2 + 10 |u_{k-1} - u_{k-2}|^2) / max_torque^2
 ///
 /// with s and w of the SaturatingCost; without a CostToGo, V = 0. Far from the goal, a step costs 1
-/// for every torque; at the goal, a torque raises the cost of the step to at most 1.
+/// for every torque; at the goal, a torque raises the cost of the step to at most 1. Changes of torque
+/// cost more than torques, because f is not exact: a plan that corrects each error at once alternates
+/// between large torques of both signs.
 ///
 /// Deviation: the offset (0 in the paper) corrects each prediction by the error of recent
 /// predictions. Offset-free MPC assumes the same error in every step (Pannocchia and Rawlings,
@@ -90,9 +92,8 @@ class DdmPlanCost : public PlanCost {
   std::vector<HeldPlan> continued(const std::vector<HeldPlan>& plans, int begin, int num_steps);
   void rollOut(const Eigen::Ref<const Eigen::MatrixXd>& U, int num_steps);
   Eigen::VectorXd featureAfter(int num_steps) const;
-  double stepCost(const Eigen::Ref<const Eigen::VectorXd>& z,
-                  const Eigen::Ref<const Eigen::VectorXd>& u, Eigen::VectorXd* d_z,
-                  Eigen::VectorXd* d_u) const;
+  double stepCost(const Eigen::Ref<const Eigen::VectorXd>& z, const Eigen::MatrixXd& torques,
+                  Eigen::Index column, Eigen::VectorXd* d_z, Eigen::MatrixXd* d_torques) const;
 
   const PredictionModel<double>& f_;
   const double* theta_p_;
@@ -108,7 +109,6 @@ class DdmPlanCost : public PlanCost {
   Eigen::MatrixXd torques_;    // u_{-n+1} ... u_{K-1} [N m]        [torque_dim x (n - 1 + K)]
   Eigen::MatrixXd d_torques_;  // dJ/d torques_ [1/(N m)]
   Eigen::VectorXd d_step_;     // d stepCost / dz                           [feature_dim]
-  Eigen::VectorXd d_torque_;   // d stepCost / du                           [torque_dim]
 };
 
 /// Makes the cost that mpc/cost selects.
