@@ -153,7 +153,7 @@ Transitions transitionsOf(const PredictionModel<double>& f, const Eigen::MatrixX
   for (const Segment& segment : data.segments()) {
     for (Eigen::Index t = segment.begin + n - 1; t + 1 < segment.begin + segment.size; ++t, ++i) {
       Eigen::Index row = 0;
-      for (int lag = 0; lag < f.order(); ++lag) {  // eq. (2)
+      for (Eigen::Index lag = 0; lag < n; ++lag) {  // eq. (2)
         if (lag < f.numFeatures()) {
           out.regressors.col(i).segment(row, dim) = Z.col(t - lag);
           row += dim;

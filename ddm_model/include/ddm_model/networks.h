@@ -24,9 +24,9 @@ namespace ddm {
 /// Deviations with model/predictor gp:
 ///  * f is z_t plus the network, which then learns only the change of z.
 ///  * h_n = [z_t, u_t, z_t - z_{t-1}, u_{t-1}, u_{t-2}, ..., u_{t-n+1}]. Features of successive images
-///    are almost equal, and only their difference shows the motion. The motion depends on n torques
-///    if the images are late: with images that are d samples late, d + 2 torques have an effect that
-///    the two features do not show yet.
+///    are almost equal, and only their difference shows the motion. If the images are d samples late,
+///    the two features do not yet show the whole effect of the last d + 2 torques, so n must be at
+///    least d + 2.
 ///  * In a trained model, the mean of a Gaussian process replaces the network.
 template <class Scalar>
 class PredictionModel {
