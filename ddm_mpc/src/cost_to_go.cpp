@@ -33,6 +33,29 @@ double spacing(const Eigen::MatrixXd& points) {
   return sum / static_cast<double>(points.cols());
 }
 
+/// @return z_t - z_{t-1} of the support states; zero if a state has a single feature
+///         [feature_dim x M]
+Eigen::MatrixXd changesOf(const Ddm& model) {
+  const Eigen::MatrixXd X = model.info().support_states.cast<double>();
+  const Eigen::Index dim = model.featureDim();
+  if (model.options().order == 1) return Eigen::MatrixXd::Zero(dim, X.cols());
+  return X.topRows(dim) - X.middleRows(dim, dim);
+}
+
+/// @return root mean square of the changes. Infinite if nothing changes: states then differ only in
+///         their features
+double changeSpreadOf(const Ddm& model) {
+  const Eigen::MatrixXd changes = changesOf(model);
+  if (changes.isZero(0.0)) return std::numeric_limits<double>::infinity();
+  return changes.norm() / std::sqrt(changes.cols());
+}
+
+/// @param change  spread of the changes / spread of the features
+double widthInPlan(double change) {
+  const double half = std::isfinite(change) ? 0.5 * change : 0.0;
+  return std::max(CostToGo::kSmallestWidthInPlan, half);
+}
+
 /// Predicts from all support states under the same torques.
 /// @param X  support states, see ModelInfo        [state_dim x M]
 /// @param u  torques [N m]                            [torque_dim]
@@ -64,21 +87,15 @@ std::vector<Eigen::MatrixXd> predictions(const Ddm& model, const Eigen::MatrixXd
 
 CostToGo::CostToGo(const Ddm& model, const Eigen::VectorXd& max_torque)
     : model_(&model),
-      step_cost_(model, max_torque, kWidthInPlan),
-      cost_in_v_(model, max_torque, kWidth) {}
+      cost_in_v_(model, max_torque, kWidth),
+      change_spread_(changeSpreadOf(model)),
+      step_cost_(model, max_torque, widthInPlan(change_spread_ / cost_in_v_.spread())) {}
 
 void CostToGo::predictOutcomes() {
   const Eigen::MatrixXd X = model_->info().support_states.cast<double>();
   const Eigen::Index dim = model_->featureDim(), M = X.cols();
-  const Eigen::MatrixXd Z = X.topRows(dim);
-  const Eigen::MatrixXd changes = model_->options().order > 1
-                                      ? Eigen::MatrixXd(Z - X.middleRows(dim, dim))
-                                      : Eigen::MatrixXd::Zero(dim, M);
-  // If nothing moves, or a state has a single feature, the states differ only in their features.
-  constexpr double kNoChange = std::numeric_limits<double>::infinity();
-  change_spread_ = changes.isZero(0.0) ? kNoChange : changes.norm() / std::sqrt(M);
   points_.resize(2 * dim, M);
-  points_ << Z / cost_in_v_.spread(), changes / change_spread_;
+  points_ << X.topRows(dim) / cost_in_v_.spread(), changesOf(*model_) / change_spread_;
   h_ = kSmoothness * spacing(points_);
   outcomes_.resize(static_cast<size_t>(M));
   for (Eigen::Index i = 0; i < cost_in_v_.torques().cols(); ++i) {

@@ -148,9 +148,9 @@ TEST(PlanWithCostToGo, WeighsEachTorqueAndItsChangeAtTheGoalByTheirShareOfTheLar
     const double whole = cost.evaluate(U, nullptr);
     return whole - time.value(cost.predictedFeatures().col(1), z, nullptr, nullptr);
   };
-  constexpr double kWidth = CostToGo::kWidthInPlan;
+  const double width = time.stepCost().width();
   constexpr double kWeight = 0.01;
-  const double effort = kWeight * (0.25 + 1.0) / (2.0 * kWidth * kWidth);
+  const double effort = kWeight * (0.25 + 1.0) / (2.0 * width * width);
   for (const Eigen::Vector2d& before : {Eigen::Vector2d(U), Eigen::Vector2d(0.0, 0.0)}) {
     const double free = costOfStep(0.0, 0.1, before);
     EXPECT_LT(free, 0.7) << "at the goal, from which these torques move the features";
@@ -166,6 +166,14 @@ TEST(CostToGo, AStepThatOnlyLooksLikeTheGoalCostsMoreThanHalf) {
   const SaturatingCost& step = time.stepCost();
   EXPECT_GT(step.evaluate(Eigen::Vector2d(0.2 * step.spread(), 0.0), nullptr), 0.5);
   EXPECT_LT(step.evaluate(Eigen::Vector2d(0.05 * step.spread(), 0.0), nullptr), 0.1);
+}
+
+TEST(CostToGo, TheCostOfAStepIsHalfAsWideAsWhatThePlantMovesInOneStepButNotTooNarrow) {
+  const CostToGo slow = costTo({0.0, 0.0}, pushedModel(line()));
+  EXPECT_EQ(slow.stepCost().width(), CostToGo::kSmallestWidthInPlan);
+  const CostToGo fast = costTo({0.0, 0.0}, pushedModel(0.25 * line()));
+  const double change = kStep * std::sqrt(4.0 / 3.0);  // root mean square of the support states
+  EXPECT_NEAR(fast.stepCost().width(), 0.5 * change / fast.stepCost().spread(), 1e-6);
 }
 
 TEST_F(PlansWithCostToGo, GoalAndExploringCountFromTheNextProblemOnHoweverOftenTheyChange) {

@@ -33,16 +33,20 @@ namespace ddm {
 ///  * with exploration (epsilon > 0), V_0 = 0.8 V_max: the goal is 160 steps away
 /// With exploration, plans therefore lead to unknown states as long as no path to the goal is known
 /// (R-max: Brafman and Tennenholtz, JMLR 2002), and follow a path once it is known.
+///
+/// The cost of the steps of a plan has a width of its own: half of the root mean square change of
+/// the feature in one step, in units of the spread s. With a narrower cost, plans for a plant that
+/// moves far in one step do not notice the goal between two images. A wider cost rewards states
+/// whose features are merely similar to the goal feature: that of an arm that is folded to the
+/// other side may be 0.2 spreads away, and the arm then stays there.
 class CostToGo {
  public:
   static constexpr int kHoldSteps = SaturatingCost::kHoldSteps;  ///< m, of the torques [-]
   /// Width of the cost in V [-]. With a narrower cost, few support states are near enough to the
   /// goal, and V is almost the same everywhere.
   static constexpr double kWidth = 0.25;
-  /// Width of the cost of the steps of a plan [-]. A wider cost rewards states whose features are
-  /// merely similar to the goal feature: that of an arm that is folded to the other side may be 0.2
-  /// spreads away, and the arm then stays there.
-  static constexpr double kWidthInPlan = 0.15;
+  /// Smallest width of the cost of the steps of a plan [-], for plants whose features change slowly.
+  static constexpr double kSmallestWidthInPlan = 0.15;
   /// Three motors have 3^3 combinations of torques for each of up to 1000 support states, each with
   /// up to 1000 weights: up to half a gigabyte and two seconds. Each further motor triples both.
   static constexpr int kMaxMotors = SaturatingCost::kMaxMotors;
@@ -88,11 +92,11 @@ class CostToGo {
   void iterate(const std::vector<std::vector<double>>& costs);
 
   const Ddm* model_;
+  SaturatingCost cost_in_v_;  // also knows the torques that value iteration compares
+  double change_spread_;      // of the changes z_t - z_{t-1}; infinite if nothing changes
   SaturatingCost step_cost_;
-  SaturatingCost cost_in_v_;    // also knows the torques that value iteration compares
-  double change_spread_ = 1.0;  // of the changes z_t - z_{t-1} of the support states
-  double h_ = 1.0;              // width of the kernel, in units of both spreads
-  Eigen::MatrixXd points_;      // p(x_i)  [2 feature_dim x M]
+  double h_ = 1.0;          // width of the kernel, in units of both spreads
+  Eigen::MatrixXd points_;  // p(x_i)  [2 feature_dim x M]
   // Of each support state, one for each combination of torques. Empty before setGoal().
   std::vector<std::vector<Outcome>> outcomes_;
   bool exploring_ = false;
