@@ -11,11 +11,9 @@
 #include <boost/algorithm/string/join.hpp>
 #include <boost/algorithm/string/split.hpp>
 #include <filesystem>
-#include <iomanip>
 #include <iostream>
 #include <memory>
 #include <opencv2/imgproc.hpp>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -23,6 +21,7 @@
 #include "ddm_common/param_reader.h"
 #include "ddm_common/param_value.h"
 #include "ddm_common/tool.h"
+#include "plant_text.h"
 
 namespace ddm {
 namespace {
@@ -42,128 +41,6 @@ constexpr char kAbout[] =
     "learner sees them.\n"
     "Exit:   0 done, 1 the model cannot be a plant as it is, 2 bad options.\n\n"
     "Options";
-
-/// Name of the contact sheet (PNG) beside a plant file.
-std::string imageFile(const std::string& plant_file) {
-  return fs::path(plant_file).replace_extension(".png").string();
-}
-
-std::string number(double value, int digits = 7) {
-  return textOf(std::setprecision(digits), value);
-}
-
-std::string list(const std::vector<double>& values) {
-  Texts texts;
-  for (const double value : values) texts.push_back(number(value));
-  return "[" + join(texts, ", ") + "]";
-}
-
-/// Range of a joint as text: "-1 to 1 rad", or "no limits".
-std::string rangeOf(const ModelJoint& joint) {
-  if (!joint.limited) return "no limits";
-  return number(joint.lower, 4) + " to " + number(joint.upper, 4) +
-         (joint.isHinge() ? " rad" : " m");
-}
-
-/// A relative path if the model lies in the folder of the plant file or below it, so that the
-/// folder can be moved. Otherwise an absolute path.
-std::string modelPath(const std::string& named, const std::string& plant_file) {
-  if (named.rfind("package://", 0) == 0) return named;
-  const fs::path model = fs::absolute(named).lexically_normal();
-  const fs::path folder = fs::absolute(plant_file).lexically_normal().parent_path();
-  const std::string near = model.lexically_relative(folder).string();
-  return near.empty() || near.rfind("..", 0) == 0 ? model.string() : near;
-}
-
-std::string quoted(const std::string& text) {
-  YAML::Emitter out;
-  out << YAML::DoubleQuoted << text;
-  return out.c_str();
-}
-
-std::string quoted(const Texts& texts) {
-  Texts all;
-  for (const std::string& one : texts) all.push_back(quoted(one));
-  return "[" + join(all, ", ") + "]";
-}
-
-/// Makes a YAML comment, with line breaks.
-std::string comment(const std::string& text, const std::string& indent = "  ") {
-  constexpr std::size_t kColumns = 100;
-  std::istringstream words(text);
-  std::string out, line = indent + "#";
-  for (std::string word; words >> word;) {
-    if (line.size() + 1 + word.size() > kColumns) {
-      out += line + "\n";
-      line = indent + "#";
-    }
-    line += " " + word;
-  }
-  return out + line + "\n";
-}
-
-/// Content of a plant file, with the reason for each value as a comment.
-std::string plantText(const std::string& model, const std::string& plant_file,
-                      const PlantProposal& proposal) {
-  const MujocoOptions& options = proposal.options;
-  Texts joints, motors, shown;
-  for (const ModelJoint& joint : proposal.joints) {
-    joints.push_back(joint.name + (joint.isHinge() ? " [rad], " : " [m], ") + rangeOf(joint));
-    if (joint.isHinge() || (joint.limited && !joint.shownInPart())) continue;
-    shown.push_back(joint.name + " from " + number(joint.shown_lower, 3) + " to " +
-                    number(joint.shown_upper, 3) + " m");
-  }
-  for (const std::string& name : proposal.motors) {
-    const auto joint = std::find_if(proposal.joints.begin(), proposal.joints.end(),
-                                    [&](const ModelJoint& one) { return one.name == name; });
-    motors.push_back(name + (joint->isHinge() ? " [N m]" : " [N]"));
-  }
-  std::ostringstream out;
-  // Writes a key, and above it a comment with the meaning of the key and the reason for its value.
-  const auto write = [&](const char* key, const std::string& value, const std::string& meaning) {
-    const auto why = proposal.reasons.find(key);
-    const bool set = std::count(proposal.to_set.begin(), proposal.to_set.end(), key) > 0;
-    out << comment((set ? "SET: " : "") + meaning +
-                   (why == proposal.reasons.end() ? "" : " (" + why->second + ")") + ".")
-        << "  " << key << ": " << value << "\n";
-  };
-  out << comment("A plant of " + fs::path(model).filename().string() +
-                     ", proposed by new_plant. It works as it is; lines with SET are values that "
-                     "the model file does not say. Images: " +
-                     fs::path(imageFile(plant_file)).filename().string() +
-                     ". All keys: config/mujoco_pendulum.yaml of ddm_sim.",
-                 "")
-      << "#\n"
-      << comment("Joints, in the order of start and goal: " + join(joints, "; ") + ".", "")
-      << "\nplant:\n  type: mujoco\n";
-  write("model", quoted(modelPath(model, plant_file)),
-        "A relative path starts at the folder of this file");
-  write("motors", quoted(options.motors), "Motors: " + join(motors, ", "));
-  write("max_torque", list(options.max_torque), "The largest torque of each motor");
-  write("dt", number(options.dt, 12), "Seconds between two images");
-  if (options.timestep > 0.0) {
-    write("timestep", number(options.timestep, 12), "Time step of the physics [s]");
-  }
-  write("start", list(options.start), "Each episode starts near this pose");
-  write("start_std", list(options.start_std),
-        "Standard deviation of each position and rate of the initial state");
-  write("goal", list(options.goal), "The pose to reach, which the learner is shown as an image");
-  const bool has_hinges = std::any_of(proposal.joints.begin(), proposal.joints.end(),
-                                      [](const ModelJoint& joint) { return joint.isHinge(); });
-  write("tolerance", number(options.tolerance),
-        std::string("The goal is reached within this error of each ") +
-            (has_hinges ? "hinge [deg]" : "joint [m]"));
-  write("camera_position", list(options.look.position),
-        "The camera sees all poses" +
-            (shown.empty()
-                 ? ""
-                 : " of " + join(shown, ", ") + "; farther away the robot leaves the image") +
-            ". For a camera of an MJCF file, write `camera: NAME` instead of these two keys");
-  write("camera_look_at", list(options.look.look_at), "The point in the middle of the image");
-  write("supersampling", std::to_string(options.look.supersampling),
-        "Images are drawn so many times larger, then averaged, so that edges are soft");
-  return out.str();
-}
 
 struct Arguments {
   std::string model;
@@ -186,7 +63,7 @@ void requireRoom(const Arguments& arguments) {
     throw po::error("option --out must be in a folder that exists, got " + folder.string() +
                     ": make it first");
   }
-  for (const std::string& file : {arguments.out, imageFile(arguments.out)}) {
+  for (const std::string& file : {arguments.out, contactSheetOf(arguments.out)}) {
     if (arguments.force || !fs::exists(file)) continue;
     throw po::error(file + " is there already: choose another name, or replace it by --force");
   }
@@ -336,11 +213,11 @@ void newPlant(const Arguments& arguments) {
   writeFileAtomically(draft, plantText(arguments.model, arguments.out, proposal));
   const std::unique_ptr<Plant> plant = makePlant(*readPlantFiles({draft}));
   printCheck(model->get(), proposal, checkPlant(proposal, *plant));
-  writeContactSheet(proposal, *plant, imageFile(arguments.out));
+  writeContactSheet(proposal, *plant, contactSheetOf(arguments.out));
   renameDurably(draft, arguments.out);
 
-  std::cout << "\nwrote " << arguments.out << " and " << imageFile(arguments.out) << "\nset in "
-            << arguments.out << ":";
+  std::cout << "\nwrote " << arguments.out << " and " << contactSheetOf(arguments.out)
+            << "\nset in " << arguments.out << ":";
   for (const std::string& key : proposal.to_set) std::cout << " plant/" << key;
   const std::string name =
       (arguments.out.find('/') == std::string::npos ? "./" : "") + arguments.out;
