@@ -21,7 +21,7 @@ std::string list(const std::vector<double>& values);
 /// @return range of a joint: "-1 to 1 rad", or "no limits"
 std::string rangeOf(const ModelJoint& joint);
 
-/// @param model       model file, as it was named
+/// @param model       path of the model file, as the user gave it
 /// @param plant_file  name of the plant file
 /// @return content of the plant file, with the reason for each value as a comment
 std::string plantText(const std::string& model, const std::string& plant_file,
