@@ -65,12 +65,6 @@ RosDriver::RosDriver(const ros::NodeHandle& nh, double timeout, Peers peers)
       topics::kGroundTruth, 0, [this](const sensor_msgs::JointStateConstPtr& state) {
         if (keeps_ground_truth_) ground_truth_[state->header.stamp] = *state;
       });
-  const auto on_model = [this](const ddm_msgs::ModelConstPtr& model) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    model_ = model;
-    changed_.notify_all();
-  };
-  model_sub_ = nh_.subscribe<ddm_msgs::Model>(topics::kModel, 1, on_model);
   // The spinner starts after the action clients are complete. An incomplete client drops the first
   // status of its server, and while simulated time stands still, the server sends no second one.
   spinner_.start();
@@ -96,7 +90,8 @@ void RosDriver::connect() {
   std::vector<std::string> missing;
   const auto connected = [&] { return (missing = missingConnections(loopTopics(nh_))).empty(); };
   waitFor(connected, [&] {
-    return "nodes do not find each other: check ROS_HOSTNAME or ROS_IP on each machine\n - " +
+    return "nodes do not find each other: check ROS_HOSTNAME or ROS_IP on each machine, and run "
+           "`rosnode cleanup` if a node has died\n - " +
            boost::algorithm::join(missing, "\n - ");
   });
   // Before a process logs its first line, roscpp reads a parameter from the master. If the master
@@ -318,13 +313,14 @@ TrainingOutcome RosDriver::train(const std::vector<std::string>& bags, const Tri
   const ddm_msgs::TrainResult result = execute(
       &train_client_, nh_.resolveName(topics::kTrain), goal,
       [](const ddm_msgs::TrainFeedback& feedback) { return feedback.fraction_done; }, progress);
-  model_id_ = result.model_id;
+  const ddm_msgs::Model& model = result.model;
+  model_id_ = model.id;
   model_pub_.shutdown();  // the publisher is latched: later subscribers must not get the old model
   TrainingOutcome outcome;
-  outcome.files["model.ddm"] = takeModel(result.model_id);
-  outcome.frames = result.frames;
-  outcome.v_r = result.v_r;
-  outcome.v_p = result.v_p;
+  outcome.files["model.ddm"] = std::string(model.data.begin(), model.data.end());
+  outcome.frames = model.frames;
+  outcome.v_r = model.v_r;
+  outcome.v_p = model.v_p;
   outcome.seconds = result.train_time;
   outcome.evaluations = result.evaluations;
   return outcome;
@@ -336,18 +332,6 @@ bool RosDriver::useModel(const std::string& path) {
   model_pub_.publish(model);
   model_id_ = model.id;
   return true;
-}
-
-std::string RosDriver::takeModel(const std::string& model_id) {
-  const auto is_there = [&] {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    return model_ != nullptr && model_->id == model_id;
-  };
-  waitFor(is_there, [&] {
-    return "model " + model_id + " did not come, " + describePublishers(model_sub_.getTopic());
-  });
-  const std::lock_guard<std::mutex> lock(mutex_);
-  return std::string(model_->data.begin(), model_->data.end());
 }
 
 }  // namespace ddm

@@ -59,7 +59,6 @@ class RosDriver : public Driver {
                                      const ddm_msgs::Reset::Response& begin,
                                      const PhaseCallback& progress);
   void takeGroundTruth(const std::vector<ros::Time>& stamps, TrialOutcome* outcome);
-  std::string takeModel(const std::string& model_id);
 
   template <class Client, class Goal, class FractionOf>
   auto execute(Client* client, const std::string& name, const Goal& goal,
@@ -85,13 +84,11 @@ class RosDriver : public Driver {
   std::mutex mutex_;  // guards the members that callbacks write, below
   std::condition_variable changed_;
   ros::SteadyTime last_sign_of_life_;
-  ddm_msgs::ModelConstPtr model_;
 
   actionlib::SimpleActionClient<ddm_msgs::RunTrialAction> trial_client_;
   actionlib::SimpleActionClient<ddm_msgs::TrainAction> train_client_;
   std::map<std::string, ros::ServiceClient> service_clients_;  // by topic, made by the first call
   ros::Subscriber ground_truth_sub_;
-  ros::Subscriber model_sub_;
   ros::Publisher model_pub_;   // publishes a saved model
   ros::AsyncSpinner spinner_;  // last member: it must start after and stop before all others
 };

@@ -183,16 +183,6 @@ void shareTimeStep(const Given& given, YAML::Node* blocks) {
   follow("mpc", "time_budget", valueToYaml(0.5 * *dt), blocks);
 }
 
-/// @throws std::invalid_argument if mpc_node would send torques to the motors of a robot directly,
-///         without the safety checks of robot_node
-void requireOneWayToTheMotors(const YAML::Node& blocks) {
-  if (!blocks["robot"].IsDefined()) return;
-  if (!valueAt<bool>(blocks, "controller", "publish_effort").value_or(false)) return;
-  throw std::invalid_argument(
-      "controller/publish_effort must be false where robot_node guards the motors, got true: leave "
-      "it out");
-}
-
 }  // namespace
 
 ResolvedConfiguration resolve(const Arguments& arguments) {
@@ -252,7 +242,6 @@ ResolvedConfiguration resolve(const Arguments& arguments) {
   };
   shareMotors(given, &resolved.blocks);
   shareTimeStep(given, &resolved.blocks);
-  requireOneWayToTheMotors(resolved.blocks);
   return resolved;
 }
 

@@ -94,10 +94,11 @@ class ModelNode {
         health_.set(Status::ERROR, trial_, training.message);
         server_.setAborted(result, training.message);
       } else {
-        publish(*training.model, &result);
+        result.model = toMessage(*training.model, ros::Time::now());
+        model_pub_.publish(result.model);
         const std::string text =
-            textOf("trained on ", result.frames, " frames in ", result.train_time, " s, V_R ",
-                   result.v_r, " grey^2, V_P ", result.v_p, " grey^2");
+            textOf("trained on ", result.model.frames, " frames in ", result.train_time, " s, V_R ",
+                   result.model.v_r, " grey^2, V_P ", result.model.v_p, " grey^2");
         ROS_INFO_STREAM("trial " << goal->trial << ": " << text);
         health_.set(Status::OK, trial_, text);
         server_.setSucceeded(result);
@@ -147,15 +148,6 @@ class ModelNode {
 
   /// @return false if the client has cancelled the training or the node shuts down
   bool isWanted() { return ros::ok() && !server_.isPreemptRequested(); }
-
-  void publish(const Ddm& model, ddm_msgs::TrainResult* result) {
-    const ddm_msgs::Model message = toMessage(model, ros::Time::now());
-    model_pub_.publish(message);
-    result->model_id = message.id;
-    result->frames = message.frames;
-    result->v_r = message.v_r;
-    result->v_p = message.v_p;
-  }
 
   ModelConfig config_;
   BagCache bags_;

@@ -39,7 +39,6 @@ MpcNode::MpcNode(ros::NodeHandle nh, ros::NodeHandle pnh, int image_size, const 
       prepare_(boost::make_shared<Callback>([this] { prepare(); })),
       finish_(boost::make_shared<Callback>([this] { onFinish(); })),
       image_spinner_(/*thread_count=*/1, &image_queue_) {
-  if (controller.publish_effort) effort_.emplace(nh, controller.torque_dim);
   server_.registerGoalCallback([this] { onGoal(); });
   server_.registerPreemptCallback([this] { onPreempt(); });
   model_sub_ = nh.subscribe(topics::kModel, 1, &MpcNode::onModel, this);
@@ -53,14 +52,8 @@ MpcNode::MpcNode(ros::NodeHandle nh, ros::NodeHandle pnh, int image_size, const 
 }
 
 MpcNode::~MpcNode() {
-  stop();                 // otherwise the spinner waits for the end of the current plan
-  image_spinner_.stop();  // no callback runs after this line
-}
-
-bool MpcNode::stop() {
-  if (goal_ == nullptr) return false;
-  endTrial();
-  return true;
+  if (goal_ != nullptr) endTrial();  // otherwise the spinner waits for the end of the current plan
+  image_spinner_.stop();             // no callback runs after this line
 }
 
 void MpcNode::onGoal() {
@@ -69,15 +62,6 @@ void MpcNode::onGoal() {
   goal_ = server_.acceptNewGoal();
   health_.expect(ControlHealth::Expected::kModel);
   last_progress_ = ros::SteadyTime::now();
-  const std::string others = effort_ ? otherPublishers(effort_->topic()) : "";
-  if (!others.empty()) {
-    lock.unlock();
-    abort({"trial refused: " + others + " also publish(es) " + effort_->topic() +
-               ", and a motor must have one master: set controller/publish_effort to false, as "
-               "next to robot_node",
-           ""});
-    return;
-  }
   beginIfReady(std::move(lock));
 }
 
@@ -193,7 +177,7 @@ void MpcNode::answer(const sensor_msgs::Image& image) {
 
   lock.lock();
   deciding_since_.reset();
-  if (trial->ended()) return;  // it was cancelled meanwhile; its motors have zero torque
+  if (trial->ended()) return;  // the trial was cancelled meanwhile
   if (!trouble.text.empty()) {
     publishTorque(image.header.stamp, Eigen::VectorXd::Zero(controller_.torque_dim), false);
   } else if (decision) {
@@ -256,7 +240,6 @@ void MpcNode::publishTorque(const ros::Time& stamp, const Eigen::VectorXd& torqu
   message.exploratory = exploratory;
   torque_pub_.publish(message);
   health_.countTorque();
-  if (effort_) effort_->publish(message.torque);
 }
 
 /// Reports the end of a trial that the image thread has ended.
@@ -314,7 +297,7 @@ std::optional<MpcNode::Trouble> MpcNode::describeSilence() {
   return Trouble{reason.str(), topic};
 }
 
-/// Ends the trial with zero torque, because an effort controller keeps its last torque otherwise.
+/// Ends the trial and the search of its running plan.
 ddm_msgs::RunTrialResult MpcNode::endTrial() {
   goal_.reset();
   const std::lock_guard<std::mutex> lock(mutex_);
@@ -327,7 +310,6 @@ ddm_msgs::RunTrialResult MpcNode::endTrial() {
   trial_.reset();
   preparing_ = false;
   finished_.reset();
-  if (effort_) effort_->publishZero();
   return result;
 }
 

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <actionlib/server/simple_action_server.h>
-#include <ddm_common/effort_publisher.h>
 #include <ddm_common/log_thread.h>
 #include <ddm_model/ddm.h>
 #include <ddm_msgs/Model.h>
@@ -31,8 +30,8 @@ namespace ddm {
 
 /// Action `run_trial`: publishes a torque on `torque` for each image of the trial, with the stamp
 /// of the image. One thread handles images: it prepares trials, plans, and reads applied torques.
-/// The thread that spins the global queue handles everything else, such as cancelled goals,
-/// timeouts and Ctrl-C, so that neither a plan nor a preparation delays them.
+/// The thread that spins the global queue handles everything else, such as cancelled goals and
+/// timeouts, so that neither a plan nor a preparation delays them.
 class MpcNode {
  public:
   /// @param nh          node handle of topics and action
@@ -41,10 +40,6 @@ class MpcNode {
   MpcNode(ros::NodeHandle nh, ros::NodeHandle pnh, int image_size, const MpcOptions& mpc,
           const ControllerOptions& controller);
   ~MpcNode();
-
-  /// Ends the current trial and publishes zero torque to every motor if controller/publish_effort.
-  /// @return false if there is no trial
-  bool stop();
 
  private:
   /// Runs a function on the thread of a callback queue.
@@ -89,7 +84,7 @@ class MpcNode {
   void publish(const std_msgs::Header& header, const Decision& decision);
   void publishTorque(const ros::Time& stamp, const Eigen::VectorXd& torque, bool exploratory);
 
-  LogThread log_;  // so that a paused terminal cannot delay stop()
+  LogThread log_;  // so that a stopped terminal cannot delay a torque
   const int image_size_;
   const MpcOptions mpc_;
   const ControllerOptions controller_;
@@ -106,7 +101,7 @@ class MpcNode {
   PlanScalars scalars_;
   ros::SteadyTime last_plan_log_;
 
-  // Guards the members up to deciding_since_, and effort_. Not held while a plan is computed.
+  // Guards the members up to deciding_since_. Not held while a plan is computed.
   std::mutex mutex_;
   sensor_msgs::ImageConstPtr goal_image_;  // the newest; null: none received
   bool goal_changed_ = false;              // goal_image_ is newer than the goal of the trial
@@ -120,7 +115,6 @@ class MpcNode {
   ros::CallbackQueue image_queue_;
   image_transport::ImageTransport transport_;
   ros::Publisher torque_pub_;
-  std::optional<EffortPublisher> effort_;  // empty: robot_node or a simulator commands the motors
   ros::Publisher plan_pub_;
   ros::Publisher scalars_pub_;
   image_transport::Subscriber image_sub_;

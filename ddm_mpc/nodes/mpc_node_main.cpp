@@ -8,8 +8,6 @@
 
 namespace {
 
-const ros::WallDuration kLook(0.05);
-
 void run(const ros::NodeHandle& nh, const ros::NodeHandle& pnh, ddm::ParamReader* params) {
   params->ignore("image_transport");    // image_transport reads it
   params->ignore("diagnostic_period");  // diagnostic_updater reads it
@@ -19,13 +17,12 @@ void run(const ros::NodeHandle& nh, const ros::NodeHandle& pnh, ddm::ParamReader
   params->requireValid();
   ROS_INFO_STREAM("mpc_node runs with\n" << ddm::toYaml(mpc) << "\n" << ddm::toYaml(controller));
   ddm::MpcNode node(nh, pnh, image.size, mpc, controller);
-  ddm::runUntilEnd([] { ros::getGlobalCallbackQueue()->callAvailable(kLook); },
-                   [&node] { return node.stop(); });
+  ros::spin();
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   ddm::silenceSolverLog();
-  return ddm::runNode("mpc_node", argc, argv, run, ddm::Ending::kByLastMessage);
+  return ddm::runNode("mpc_node", argc, argv, run);
 }

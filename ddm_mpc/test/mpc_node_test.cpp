@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_msgs/testing/node_main.h>
 #include <gtest/gtest.h>
-#include <std_msgs/Float64.h>
 
 #include "trial_client.h"
 
@@ -28,8 +27,6 @@ TEST_F(MpcNodeTest, AnswersEachImageOfARandomTrialWithATorqueOfItsStamp) {
 }
 
 TEST_F(MpcNodeTest, WaitsForTheModelOfTheGoalAndThenPlans) {
-  const Listener<std_msgs::Float64> effort(client_.nh, topics::kEffortCommand);
-  ASSERT_TRUE(waitUntil([&] { return effort.connected(); }));
   const ddm_msgs::Model model = modelOfSeed(11);
   ddm_msgs::RunTrialGoal goal = trialGoal(4, /*epsilon=*/0.0, model.id);
   // The first image is there before goal and model are, as in lock-step; it is answered all the
@@ -43,7 +40,7 @@ TEST_F(MpcNodeTest, WaitsForTheModelOfTheGoalAndThenPlans) {
   ASSERT_TRUE(waitUntil([this] { return torque_.messages.size() == 1; }));
   show(4);
   expectEnd(State::SUCCEEDED);
-  ASSERT_TRUE(waitUntil([&] { return plan_.messages.size() == 4 && effort.messages.size() == 5; }));
+  ASSERT_TRUE(waitUntil([this] { return plan_.messages.size() == 4; }));
   for (std::size_t step = 0; step < 4; ++step) {
     const ddm_msgs::Plan& plan = plan_.messages[step];
     EXPECT_EQ(torque_.messages[step].header.stamp, stamps_[step]);
@@ -55,10 +52,8 @@ TEST_F(MpcNodeTest, WaitsForTheModelOfTheGoalAndThenPlans) {
     EXPECT_EQ(plan.feature.size(), 32U);
     EXPECT_EQ(plan.goal_feature.size(), 2U);
     EXPECT_EQ(plan.torque[0], torque_.messages[step].torque[0]);
-    EXPECT_EQ(effort.messages[step].data, torque_.messages[step].torque[0]);
     EXPECT_GT(plan.solve_time, 0.0);
   }
-  EXPECT_EQ(effort.messages.back().data, 0.0);  // nobody drives the motor from here on
   EXPECT_EQ(action_.getResult()->solve_time.size(), 4U);
 }
 
@@ -106,12 +101,6 @@ TEST_F(MpcNodeOfAPlantTest, TakesWhatActedAndWhatWasNotSeenIntoItsState) {
   EXPECT_NE(anew, usual) << "no torque acted";
   EXPECT_EQ(secondTorque({}, false, 0.2), anew) << "an image is missing";
   EXPECT_EQ(secondTorque({}, false, 0.05), usual) << "an image is a little late";
-}
-
-TEST_F(MpcNodeTest, RefusesATrialWhereAnotherNodeCommandsTheMotors) {
-  const ros::Publisher other = client_.nh.advertise<std_msgs::Float64>(topics::kEffortCommand, 1);
-  begin(trialGoal(2, 1.0));
-  expectEnd(State::ABORTED, {"effort_command", "controller/publish_effort"});
 }
 
 TEST_F(MpcNodeTest, PublishesZeroTorqueAndSaysSoWhereThePlanFails) {

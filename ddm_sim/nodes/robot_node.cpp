@@ -326,11 +326,7 @@ int main(int argc, char** argv) {
     ddm::RobotNode node(nh, pnh, image.size, robot);
     ros::AsyncSpinner spinner(4);  // one of the threads may be blocked in a reset
     spinner.start();
-    const auto stop = [&node] {
-      node.stopMotors("this node ends");
-      return true;
-    };
-    ddm::runUntilEnd([] { ros::WallDuration(0.05).sleep(); }, stop);
+    ddm::runUntilEnd([&node] { node.stopMotors("this node ends"); });
   };
   return ddm::runNode("robot_node", argc, argv, run, ddm::Ending::kByLastMessage);
 }

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ddm_common/effort_publisher.h>
 #include <ddm_common/log_thread.h>
 #include <ddm_common/node_watch.h>
 #include <ddm_msgs/Reset.h>
@@ -21,6 +20,8 @@
 #include <atomic>
 #include <mutex>
 #include <string>
+
+#include "effort_publisher.h"
 
 namespace ddm {
 

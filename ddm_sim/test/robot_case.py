@@ -119,7 +119,7 @@ class Listener:
 class Robot:
     """robot_node and its surroundings."""
 
-    def __init__(self, num_motors, *arguments, **kwargs):
+    def __init__(self, num_motors, *arguments, started_by=(), **kwargs):
         self.camera = Camera("camera/source")
         self.images = Listener("camera/image_raw", Image)
         self.goals = Listener("goal_image", Image)
@@ -133,7 +133,7 @@ class Robot:
         self.torques = rospy.Publisher("torque", Torque, queue_size=10, tcp_nodelay=True)
         self.trial_ends = rospy.Publisher("run_trial/result", RunTrialActionResult, queue_size=1)
         self.controller = None
-        self.process = Process([find_program("ddm_sim", "robot_node")] + list(arguments), **kwargs)
+        self.process = Process([*started_by, find_program("ddm_sim", "robot_node"), *arguments], **kwargs)
         rospy.wait_for_service("reset", LIMIT_S)
         wait_until(lambda: self.torques.get_num_connections() and self.trial_ends.get_num_connections(), "robot_node")
         for listener in self.listeners():  # otherwise a message that is sent once could be lost

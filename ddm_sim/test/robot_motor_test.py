@@ -165,6 +165,19 @@ class RobotEndTest(RobotCase):
             robot.end()
             self.assertTrue(number or "user request" in robot.process.output)
 
+    def test_the_motor_stops_and_the_node_ends_where_its_roslaunch_is_killed_or_suspended(self):
+        for number in (signal.SIGKILL, signal.SIGSTOP):
+            robot = self.start(started_by=["sh", "-c", '"$@" & wait', "sh"])  # the shell is in the place of roslaunch
+            self.assertTrue(robot.enable(True).success)
+            robot.answer(2.0)
+            robot.waitForEffort(2.0)
+            robot.process.send(number)
+            robot.process.waitForText("has ended or is suspended", LIMIT_S)
+            wait_until(lambda: robot.efforts.messages[-1].data == 0.0, "zero")
+            robot.process.send(signal.SIGKILL)
+            robot.process.waitForEnd(LIMIT_S)  # of the node, too, which has the output of the shell
+            robot.end()
+
     def test_the_motor_stops_with_the_camera_and_the_node_ends_where_nobody_reads_what_it_logs(self):
         """The pipe behaves like a terminal that is stopped (Ctrl-S), a pager, or a connection that hangs."""
         _, writer = os.pipe()

@@ -59,17 +59,15 @@ struct MpcOptions {
 
 /// Block `controller`: parameters of mpc_node other than those of the planner.
 struct ControllerOptions {
-  int torque_dim = 1;           ///< number of motors; a random trial has no model that gives it [-]
-  double timeout = 5.0;         ///< wall time in which an image or the model must arrive [s]
-  double dt = 0.0;              ///< time step; 0: shortest time between two images of the trial [s]
-  bool publish_effort = false;  ///< whether mpc_node also commands the motors itself
+  int torque_dim = 1;    ///< number of motors; a random trial has no model that gives it [-]
+  double timeout = 5.0;  ///< wall time in which an image or the model must arrive [s]
+  double dt = 0.0;       ///< time step; 0: shortest time between two images of the trial [s]
 
   template <class Visitor>
   void visit(Visitor& visitor) {
     visitor("torque_dim", torque_dim);
     visitor("timeout", timeout);
     visitor("dt", dt);
-    visitor("publish_effort", publish_effort);
   }
   std::vector<std::string> problems() const {
     OptionChecks controller("controller");

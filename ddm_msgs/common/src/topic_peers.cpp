@@ -173,11 +173,6 @@ std::vector<std::string> missingConnections(const std::vector<std::string>& topi
   return missing;
 }
 
-std::string otherPublishers(const std::string& topic) {
-  const auto nodes = publishersAndSubscribers();
-  return nodes ? boost::algorithm::join(othersThatPublish(nodes->first, topic), ", ") : "";
-}
-
 std::vector<std::string> sharedTopics(const std::vector<std::string>& topics) {
   const auto nodes = publishersAndSubscribers();
   if (!nodes) {

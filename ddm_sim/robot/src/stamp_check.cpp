@@ -34,7 +34,9 @@ std::string StampCheck::compare(Stamp clock, Stamp stamp) const {
   const Stamp age = clock - stamp;
   if (age <= dt_ && age >= -dt_) return "";
   if (stamp == Stamp(0)) {
-    return item_ + " has no stamp, so its age is unknown: let the driver set header.stamp";
+    return item_ +
+           " has no stamp, so its age is unknown: let the driver set header.stamp; if the driver "
+           "started while /use_sim_time was true, start it again";
   }
   return textOf("the ", sensor_, "'s stamps and this machine's clock differ by ",
                 std::abs(toSeconds(age)), " s when ", item_, " arrives, at most ", toSeconds(dt_),

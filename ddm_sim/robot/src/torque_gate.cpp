@@ -10,7 +10,9 @@ namespace ddm {
 namespace {
 
 constexpr char kNoListener[] =
-    "no node subscribes to the efforts, so that torques cannot act: start the effort controller";
+    "no node subscribes to the efforts, so that torques cannot act: start the effort controller. "
+    "It must take std_msgs/Float64 for one motor, Float64MultiArray for several, and reach this "
+    "machine, see ROS_IP";
 
 }  // namespace
 

@@ -5,11 +5,13 @@
 #include <ros/console.h>
 #include <ros/ros.h>
 #include <ros/xmlrpc_manager.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
+#include <fstream>
 #include <string>
 #include <thread>
 
@@ -51,6 +53,16 @@ inline void silenceSendingThread() {
   ros::console::notifyLoggerLevelsChanged();
 }
 
+/// Whether a process is suspended, as by Ctrl-Z.
+inline bool isSuspended(pid_t process) {
+  std::ifstream file("/proc/" + std::to_string(process) + "/stat");
+  std::string status;
+  std::getline(file, status);
+  // PID (NAME) STATE ..., where the name may contain parentheses
+  const std::string::size_type end = status.rfind(") ");
+  return end != std::string::npos && status.compare(end + 2, 1, "T") == 0;
+}
+
 }  // namespace internal
 
 /// How a node ends when the user or the master requests its end.
@@ -59,22 +71,30 @@ enum class Ending {
   kByLastMessage  ///< the node runs in runUntilEnd() and sends a last message
 };
 
-/// Runs a node with motors until SIGINT, SIGTERM, SIGQUIT, SIGHUP or the master requests its end. A
-/// closed terminal sends SIGHUP, except under nohup. Ctrl-Z is ignored, because a suspended node
-/// would leave the motors with their last torque. roscpp's own signal handlers shut down all topics
-/// before a zero torque can be sent, so start the node with kByLastMessage.
+/// Runs a node with motors until SIGINT, SIGTERM, SIGQUIT, SIGHUP or the master requests its end, or
+/// until the process that has started the node ends or is suspended. This process is roslaunch,
+/// whose nodes would not notice that somebody has killed it or pressed Ctrl-Z. A closed terminal
+/// sends SIGHUP, except under nohup. The node itself ignores Ctrl-Z, because a suspended node would
+/// leave the motors with their last torque. roscpp's own signal handlers shut down all topics before
+/// a zero torque can be sent, so start the node with kByLastMessage.
 ///
-/// @param look  called in a loop; must return soon
-/// @param stop  sends the last message; returns false if there was no message to send
-template <class Look, class Stop>
-void runUntilEnd(const Look& look, const Stop& stop) {
+/// @param stop  sends the last message
+template <class Stop>
+void runUntilEnd(const Stop& stop) {
   std::signal(SIGINT, internal::onSignal);
   std::signal(SIGTERM, internal::onSignal);
   std::signal(SIGQUIT, internal::onSignal);
   std::signal(SIGTSTP, SIG_IGN);
   if (std::signal(SIGHUP, internal::onSignal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
-  while (ros::ok() && !internal::end_requested) look();
-  if (stop()) ros::WallDuration(0.1).sleep();  // gives the message time to leave
+  const pid_t parent = getppid();
+  while (ros::ok() && !internal::end_requested) {
+    ros::WallDuration(0.05).sleep();
+    if (getppid() == parent && !internal::isSuspended(parent)) continue;
+    ROS_ERROR("the process that started this node has ended or is suspended: this node ends");
+    break;
+  }
+  stop();
+  ros::WallDuration(0.1).sleep();  // gives the message time to leave
   internal::endSoon(EXIT_SUCCESS);
   ros::shutdown();
 }

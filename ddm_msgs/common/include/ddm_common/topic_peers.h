@@ -55,10 +55,6 @@ std::string describeImagePublishers(const std::string& topic, const std::string&
 /// @return "/sim_node -> /mpc_node on /camera/image_raw" for each missing connection
 std::vector<std::string> missingConnections(const std::vector<std::string>& topics);
 
-/// Returns the other nodes that publish a topic, according to the master: "/a, /b".
-/// @param topic  resolved name
-std::string otherPublishers(const std::string& topic);
-
 /// Finds the topics that several other nodes publish; this node is not counted.
 /// @param topics  resolved names
 /// @return "/torque: /intruder, /mpc_node" for each such topic

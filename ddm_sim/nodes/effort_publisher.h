@@ -6,7 +6,6 @@
 #include <std_msgs/Float64.h>
 #include <std_msgs/Float64MultiArray.h>
 
-#include <string>
 #include <vector>
 
 #include "ddm_msgs/topics.h"
@@ -37,10 +36,6 @@ class EffortPublisher {
   }
 
   int numSubscribers() const { return static_cast<int>(publisher_.getNumSubscribers()); }
-  std::string topic() const { return publisher_.getTopic(); }
-
-  /// Publishes zero torque for every motor.
-  void publishZero() { publish(std::vector<double>(static_cast<std::size_t>(num_motors_), 0.0)); }
 
  private:
   static constexpr int kQueue = 10;
