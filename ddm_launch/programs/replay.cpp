@@ -199,6 +199,7 @@ void run(const ros::NodeHandle& nh, ParamReader* params) {
   const auto options = params->read<ReplayOptions>("replay");
   const auto topics = params->read<BagOptions>("data_set");
   params->requireValid();
+  if (!options.out.empty()) requireWritable(options.out);
   const std::shared_ptr<const Ddm> model = readModel(options.model);
   const BagContent bag = readBag(options.bag, model->imageSize(), topics);
   for (const std::string& note : bag.notes) ROS_WARN_STREAM("bag " << options.bag << ": " << note);

@@ -3,6 +3,8 @@
 import os
 import re
 import shutil
+import signal
+import subprocess
 import sys
 
 import numpy as np
@@ -31,7 +33,7 @@ def run_commands(folder, example, *replacements):
 def test_each_example_is_short_and_on_the_page():
     for name in sorted(os.listdir(os.path.join(pages.CHECKOUT, FOLDER))):
         if name.endswith(".py"):
-            assert len(pages.read(os.path.join(FOLDER, name)).splitlines()) < 60
+            assert len(pages.read(os.path.join(FOLDER, name)).splitlines()) <= 70
             assert "python3 %s/%s " % (FOLDER, name) in pages.read(PAGE), name
 
 
@@ -55,7 +57,7 @@ def test_compare_method_writes_tables_that_the_figure_draws(tmp_path):
     assert "1" in [row.split(",")[3] for row in tables[0][1:]] and (tmp_path / "comparison.png").exists()
 
 
-def test_webcam_robot_learns_from_a_video_and_then_acts(tmp_path):
+def write_video(tmp_path):
     env = ddm_sim.make("pendulum")
     image, info = env.reset(seed=1)
     cv2.imwrite(str(tmp_path / "goal.png"), cv2.resize(info["goal_image"], (52, 52)))
@@ -65,8 +67,31 @@ def test_webcam_robot_learns_from_a_video_and_then_acts(tmp_path):
         video.write(cv2.cvtColor(cv2.resize(image, (52, 52)), cv2.COLOR_GRAY2BGR))
         image = env.step(random.uniform(-6.0, 6.0, 1))[0]
     video.release()
+
+
+def test_webcam_robot_learns_from_a_video_and_then_acts(tmp_path):
+    write_video(tmp_path)
     run_commands(tmp_path, "webcam_robot.py", (" 0 goal.png", " video.avi goal.png --dt 0"))
     assert cv2.imread(str(tmp_path / "predictions.png")).shape[:2] == (102, 510)
+
+
+def test_webcam_robot_checks_the_goal_first_and_stops_the_motors_when_it_is_terminated(tmp_path):
+    write_video(tmp_path)
+    program = "import webcam_robot; webcam_robot.send_torque = lambda u: print(u[0], flush=True); webcam_robot.main()"
+    environment = dict(os.environ, PYTHONPATH=os.path.join(pages.CHECKOUT, FOLDER) + ":" + os.environ["PYTHONPATH"])
+
+    def start(goal):
+        return subprocess.Popen([sys.executable, "-c", program, "video.avi", goal], cwd=str(tmp_path), env=environment,
+                                universal_newlines=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+
+    cv2.imwrite(str(tmp_path / "small.png"), np.zeros((20, 20), np.uint8))
+    for goal in ("missing.png", "small.png"):
+        output, errors = start(goal).communicate(timeout=100.0)
+        assert output == "" and goal in errors and "52 x 52" in errors
+    robot = start("goal.png")
+    assert float(robot.stdout.readline()) != 0.0
+    robot.send_signal(signal.SIGTERM)
+    assert float(robot.communicate(timeout=100.0)[0].splitlines()[-1]) == 0.0
 
 
 def test_from_bags_writes_a_model_and_its_report(tmp_path):
@@ -74,5 +99,10 @@ def test_from_bags_writes_a_model_and_its_report(tmp_path):
         run = tmp_path / ("run_%d" % seed)
         run_experiment("--preset", "debug", "--trials", 0, "--set", "trial/num_steps=60", "--seed", seed, "--out", run)
         shutil.copy(str(run / "trial_000" / "trial.bag"), str(tmp_path / ("%d.bag" % seed)))
+    command = [sys.executable, os.path.join(pages.CHECKOUT, FOLDER, "from_bags.py"), tmp_path / "1.bag"]
+    output_of(command + ["--max-torque", "6"], code=2, words=("at least two bags", "1.bag"))
+    (tmp_path / "names.yaml").write_text("data_set: {image_topic: eye}")
+    output_of(command + [tmp_path / "2.bag", "--max-torque", "6", "--config", tmp_path / "names.yaml"], code=1,
+              words=("no topic eye",))
     output = run_commands(tmp_path, "from_bags.py")
     assert "2 episodes with 120 images" in output and (tmp_path / "report" / "report.html").exists()

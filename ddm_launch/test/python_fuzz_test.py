@@ -50,7 +50,7 @@ def make_functions():
             (lambda images, torques: train(episodes=[(images, torques)], goal=None, preset="debug"), {"images": images, "torques": torques}),
             (model.encode, {"images": images}), (model.decode, {"features": features}),
             (model.predict, {"features": features[:model.options["order"]], "torques": torques[:model.options["order"]]}),
-            (model.rollout, {"features": features[:model.options["order"]], "torques": torques}),
+            (model.roll_out, {"features": features[:model.options["order"]], "torques": torques}),
             (ddm_model.Model.load, {"path": "/nonexistent"}), (model.save, {"path": "/nonexistent/model.ddm"}),
             (ddm_mpc.Controller, {"model": model, "preset": "debug", "plant": None, "epsilon": 0.1, "mpc": {}, "max_torque": 6.0}),
             (controller.reset, {"seed": 0, "trial": 0}), (controller.set_goal, {"image": images[0]}),

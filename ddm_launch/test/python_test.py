@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import threading
+import types
 
 import numpy as np
 import pytest
@@ -89,6 +90,14 @@ def test_options_and_messages_are_those_of_the_yaml_files(episode, tmp_path):
         ddm_model.train([episode, (images[:, 1:], torques)], None)
     with pytest.raises(ValueError, match=r"torques of episode 1 must be an array \[T x 1\] of finite numbers, got float64 \[100 x 2\]"):
         ddm_model.train([episode, (images, np.hstack([torques, torques]))], None)
+    for without_limit in (lambda: ddm_model.train([episode], None), lambda: ddm_mpc.Controller(None)):
+        with pytest.raises(ValueError, match="max_torque must be given"):
+            without_limit()
+
+
+def test_an_environment_may_be_wrapped_as_by_gymnasium():
+    wrapper = types.SimpleNamespace(unwrapped=ddm_sim.make("pendulum"))
+    assert ddm_mpc.Controller(None, plant=wrapper).options["max_torque"] == 6.0
 
 
 def test_other_threads_run_during_a_training_and_an_error_of_progress_stops_it(episode):
@@ -107,7 +116,7 @@ def test_other_threads_run_during_a_training_and_an_error_of_progress_stops_it(e
     thread.start()
     try:
         with pytest.raises(KeyError, match="enough"):
-            ddm_model.train([episode], None, progress=progress, num_starts=1000, max_iterations=100000)
+            ddm_model.train([episode], None, progress=progress, num_starts=1000, max_iterations=100000, max_torque=6.0)
     finally:
         stop.set()
         thread.join()
@@ -117,7 +126,7 @@ def test_ctrl_c_stops_a_training(episode, tmp_path):
     np.savez(tmp_path / "episode.npz", images=episode[0], torques=episode[1])
     script = ("import sys, numpy, ddm_model\nepisode = numpy.load(sys.argv[1])\n"
               "def progress(fraction, v_r, v_p):\n    print(fraction, flush=True)\n"
-              "ddm_model.train([(episode['images'], episode['torques'])], None, progress=progress, num_starts=1000)")
+              "ddm_model.train([(episode['images'], episode['torques'])], None, progress=progress, num_starts=1000, max_torque=6.0)")
     process = subprocess.Popen([sys.executable, "-c", script, str(tmp_path / "episode.npz")], stdout=subprocess.PIPE,
                                stderr=subprocess.PIPE, universal_newlines=True)
     process.stdout.readline()

@@ -73,7 +73,7 @@ def test_the_zero_of_a_last_image_that_is_refused_is_no_proposal(trial, tmp_path
     assert not os.path.exists(out)
 
 
-def test_time_that_does_not_come_and_a_bag_of_another_robot_are_named(trial, tmp_path):
+def test_time_that_does_not_come_a_bag_of_another_robot_and_a_file_that_cannot_be_written_are_named(trial, tmp_path):
     rospy.set_param("/use_sim_time", True)
     output_of([find_program("experiment_node"), "replay", "_replay/bag:=" + trial[0], "_replay/model:=" + trial[1],
                "_replay/timeout:=0.5"], code=1, words=("0.5 s", "nobody", "/clock"))
@@ -83,3 +83,5 @@ def test_time_that_does_not_come_and_a_bag_of_another_robot_are_named(trial, tmp
                "image/size=20", "--out", model, trial[0]])
     output, _ = replay(tmp_path, "bag:=" + trial[0], "model:=" + model)
     assert "FATAL" in output and "image/size 51" in output
+    output_of([find_program("experiment_node"), "replay", "_replay/bag:=missing.bag", "_replay/model:=missing.ddm",
+               "_replay/out:=/no_folder/torques.csv"], code=1, words=("cannot write /no_folder/torques.csv", "No such file"))

@@ -1,9 +1,7 @@
-// Fuzz targets of ddm_model: bags, model files and model messages.
+// Fuzz targets of ddm_model: bags and model files.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ddm_bag_io/bag_reader.h>
-#include <ddm_bag_io/model_message.h>
 #include <ddm_model/model_file.h>
-#include <ddm_msgs/message_bytes.h>
 #include <ddm_msgs/testing/fuzzing.h>
 
 #include <algorithm>
@@ -96,38 +94,12 @@ void modelFile(const std::uint8_t* data, std::size_t size) {
   checkFile(repaired(bytes));
 }
 
-/// Reads the bytes as a model message, makes the model, and makes the message again.
-void modelMessage(const std::uint8_t* data, std::size_t size) {
-  ddm_msgs::Model message;
-  const auto parse = [&] {
-    message = messageFromBytes<ddm_msgs::Model>(reinterpret_cast<const char*>(data), size);
-  };
-  if (!accepts<std::runtime_error>(parse)) return;
-
-  const std::string bytes = repaired(std::string(message.data.begin(), message.data.end()));
-  std::optional<Ddm> model;
-  const auto read = [&] { model.emplace(deserialiseModel(bytes, "on topic model")); };
-  if (!accepts<std::runtime_error>(read)) return;
-
-  const ddm_msgs::Model again = toMessage(*model, message.header.stamp);
-  require(again.id == modelId(std::string(again.data.begin(), again.data.end())),
-          "a message names its model");
-  require(again.feature_dim == static_cast<std::uint32_t>(model->featureDim()) &&
-              again.torque_dim == static_cast<std::uint32_t>(model->torqueDim()) &&
-              again.image_size == static_cast<std::uint32_t>(model->imageSize()),
-          "a message tells the sizes of its model");
-  require(comesBack(bytes, std::string(again.data.begin(), again.data.end())),
-          "a model comes back");
-}
-
 }  // namespace
 }  // namespace ddm
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const ddm::testing::FuzzTarget target =
-      ddm::testing::chosenTarget({{"bag_file", ddm::bagFile},
-                                  {"model_file", ddm::modelFile},
-                                  {"model_message", ddm::modelMessage}});
+      ddm::testing::chosenTarget({{"bag_file", ddm::bagFile}, {"model_file", ddm::modelFile}});
   target(data, size);
   return 0;
 }

@@ -108,11 +108,15 @@ std::shared_ptr<Ddm> trainModel(const py::iterable& episodes, const py::object& 
     throw py::type_error("progress must be a function, got " + describe(progress));
   }
   YAML::Node blocks = mergedBlocks(layers, options, toYaml(ModelConfig()));
-  takeOverLimits("model", &blocks);
+  const bool has_limits = takeOverLimits("model", &blocks) != "the default";
   ParamReader reader(blocks);
   const ModelConfig config = readModelConfig(&reader);
   reader.requireValid();
   const DataSet data = dataOf(episodes, goal, config.image.size);
+  if (!has_limits) {
+    throw py::value_error(
+        "max_torque must be given where there is no plant: the limit of each motor [N m]");
+  }
   ModelInfo info;
   info.seed = wholeOf<std::uint64_t>(seed, "seed");
   info.trial = trial.is_none() ? static_cast<std::uint32_t>(data.segments().size() - 1)
@@ -126,7 +130,7 @@ std::shared_ptr<Ddm> trainModel(const py::iterable& episodes, const py::object& 
 std::shared_ptr<Ddm> load(const py::object& file) {
   const std::string path = pathOf(file);
   try {
-    return std::make_shared<Ddm>(deserialiseModel(readFile(path), "model " + path));
+    return std::make_shared<Ddm>(deserialiseModel(readFile(path), path));
   } catch (const std::runtime_error& error) {
     const py::object type = py::module::import("ddm_model.model").attr("ModelFileError");
     PyErr_SetString(type.ptr(), error.what());
@@ -234,7 +238,7 @@ PYBIND11_MODULE(_core, module) {
           "torques: the last n torques with u_t at the end [n, torque_dim, N m].\n"
           "Returns z_{t+1} [feature_dim]. Raises TypeError or ValueError.")
       .def(
-          "rollout",
+          "roll_out",
           [](const Ddm& self, const py::object& features, const py::object& torques) {
             return rowsOf(rollOut(self, features, torques, false));
           },

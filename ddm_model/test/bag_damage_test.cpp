@@ -103,6 +103,7 @@ TEST_F(BagDamage, WhatIsInNoIndexDoesNotCountAsInRosbag) {
   std::memcpy(&padded[at], &index, sizeof(index));
   writeBytes(padded);
   EXPECT_EQ(read().data.numFrames(), 30);
+  EXPECT_TRUE(notes({{"77 bytes behind its index are not read", "second bag"}}));
 }
 
 TEST_F(BagDamage, WhatPeopleTakeForABagIsToldWithTheCommandThatHelps) {

@@ -6,6 +6,7 @@ import html.parser
 import io
 import os
 import resource
+import types
 
 import matplotlib.image
 import numpy as np
@@ -15,6 +16,7 @@ import rosbag
 import yaml
 
 import toy_robot
+from ddm_model import report_figures
 from ddm_model.model import load
 from ddm_model.model_data import ModelData
 
@@ -120,6 +122,26 @@ def test_a_motor_that_hardly_moves_is_found_under_whatever_name_of_its_topics(ma
     assert inspect("--image-topic", "eye", bag)[0].text == page.text
     assert "what to do" in page.text and "Record trials" in page.text
     assert not verdict["Torques are excited"] and "FAILED     Torques are excited" in output
+
+
+def test_bags_are_read_as_those_of_the_model_were(inspect, tmp_path):
+    bag, options = str(tmp_path / "a.bag"), ["--image-topic", "eye", "--crop", "0,0,16,16"]
+    toy_robot.write_bag(bag, num_frames=80, image_topic="eye", size=24)
+    model = toy_robot.train(tmp_path, [bag], more=options)
+    page = inspect(bag, model=model)[0]
+    assert inspect(*options, bag, model=model)[0].text == page.text
+    assert inspect("--crop", "0,0,24,24", bag, model=model)[0].text != page.text
+
+
+def test_bags_of_trials_and_all_torques_and_features_are_shown():
+    torques, features = np.zeros((5, 2)), np.zeros((5, 8))
+    data = types.SimpleNamespace(torques=torques, features=features, max_torque=[1.0, 2.0], unpaired={},
+                                 bags={"bag": ["run/trial_000/trial.bag", "run/trial_001/trial.bag"]},
+                                 frames={"bag": np.arange(5) % 2, "time_s": np.arange(5)})
+    labels = [axes.get_xlabel() for axes in report_figures.draw_coverage(data).axes]
+    assert len(labels) == 10 and "torque $u_{2}$ [N m]" in labels
+    names = [label.get_text() for label in report_figures.draw_pairing(data).axes[0].get_yticklabels()]
+    assert names == ["trial_000/trial.bag", "trial_001/trial.bag"]
 
 
 def test_a_model_alone_tells_what_it_is_and_a_bag_too_short_to_predict_is_drawn_as_far_as_it_goes(inspect, made, tmp_path):

@@ -284,6 +284,29 @@ TEST_F(OtherBags, ADroppedImageIsReplacedByItsNeighbourOrSplitsTheBag) {
   EXPECT_TRUE(notes({{"at 1 place(s)", "after 10.6", "2 segments"}}));
 }
 
+TEST_F(OtherBags, EachImageOfACameraWithThisRateCountsHoweverItsTimesJitter) {
+  for (int k = 0; k < kFrames; ++k) {
+    const double recorded = kBegin + kDt * k + 0.02 * std::sin(2.0 * k);
+    write("camera/image_raw", recorded, imageMessage(0.0, toyImage(angleOf(kImagesPerFrame * k))));
+    write("command", recorded + kLatency, floatOf(torqueOf(k)));
+  }
+  close();
+  expectTorques();
+  EXPECT_EQ(read().data.segments().size(), 1U);
+  EXPECT_TRUE(notes({}));
+}
+
+TEST_F(OtherBags, ImagesWhoseTimesAreTooIrregularAreRefusedWithThem) {
+  for (int k = 0; k < kFrames; ++k) {
+    for (const double time : {kBegin + 0.22 * k, kBegin + 0.22 * k + 0.05}) {
+      write("camera/image_raw", time, imageMessage(time, toyImage(time)));
+    }
+  }
+  writeFloats();
+  close();
+  EXPECT_TRUE(isRefused({"irregularly, from 0.05 s to 0.17 s", "dt = 0.1 s", "the camera"}));
+}
+
 TEST_F(OtherBags, ATorqueHoldsHoweverLongItTakesAndImagesBeforeTheFirstAreDropped) {
   writeImages();
   for (const int k : {3, 4, 5, 13}) write("command", kBegin + kDt * k + kLatency, floatOf(k));
@@ -343,9 +366,18 @@ TEST_F(OtherBags, ARecordingCountsOnce) {
   close();
   const std::string copy = folder_.file("copy.bag");
   std::filesystem::copy_file(path_, copy);
-  const auto readBoth = [&] { BagCache(kToySize, options_).read({path_, copy}); };
-  EXPECT_TRUE(testing::throwsNaming<std::runtime_error>(
-      readBoth, {"bag " + copy, "20 of its 20 frames", path_, "count twice"}));
+  const auto isRefused = [this](const std::vector<std::string>& bags,
+                                const std::vector<std::string>& words) {
+    return testing::throwsNaming<std::runtime_error>(
+        [&] { BagCache(kToySize, options_).read(bags); }, words);
+  };
+  EXPECT_TRUE(isRefused({path_, copy}, {copy, "60 of its 60 images", path_, "count twice"}));
+  open();
+  writeImages([](int i) { return i >= 1 && i < 7; });  // the samples of the copy are 0, 3, 6, ...
+  writeFloats();
+  close();
+  EXPECT_TRUE(isRefused({copy, path_}, {path_, "6 of its 6 images", "the 60 of bag " + copy}));
+  EXPECT_TRUE(isRefused({path_, copy}, {copy, "6 of its 60 images", "the 6 of bag " + path_}));
 }
 
 TEST_F(OtherBags, TwoControllersAtOnceAreRefused) {
@@ -368,6 +400,38 @@ TEST_F(OtherBags, ControllersOneAfterTheOtherAndThoseWithoutANameAreNoTwoAtOnce)
   EXPECT_TRUE(notes({{"/first (8 from 10.0", "/second (8 from 11.0", "one after the other"}}));
 }
 
+TEST_F(OtherBags, ControllersThatTakeTurnsAreNoTwoAtOnce) {
+  writeImages();
+  for (int k = 0; k < kFrames; ++k) {
+    const char* const publisher = k >= 5 && k < 10 ? "/teleop" : "/controller";
+    write("command", kBegin + kDt * k + kLatency, floatOf(torqueOf(k)), publisher);
+  }
+  close();
+  expectAllFrames();
+  EXPECT_TRUE(notes({{"/controller (15 from 10.0", "/teleop (5 from 10.5", "after the other"}}));
+}
+
+TEST_F(OtherBags, ARecordingWhoseClockWasSetBackIsRefusedAndMergedBagsAreNot) {
+  const auto expectOrRefuse = [this](double begin, bool refused) {
+    open();
+    for (const double from : {kBegin, begin}) {
+      for (int k = 0; k < kFrames; ++k) {
+        const double time = from + kDt * k;
+        write("camera/image_raw", time, imageMessage(time, toyImage(from + angleOf(k))));
+        write("command", time + kLatency, floatOf(torqueOf(k)));
+      }
+    }
+    close();
+    if (refused) {
+      EXPECT_TRUE(isRefused({"images", "from 10.0", "again from 10.03", "in a bag of its own"}));
+    } else {
+      EXPECT_EQ(read().data.numFrames(), 2 * kFrames);
+    }
+  };
+  expectOrRefuse(kBegin + 0.03, /*refused=*/true);  // as a simulation that begins anew
+  expectOrRefuse(kBegin - 5.0, /*refused=*/false);
+}
+
 TEST_F(OtherBags, TheTimeBetweenFramesMustBeGivenAndSuitTheCamera) {
   writeImages();
   writeFloats();
@@ -382,6 +446,10 @@ TEST_F(OtherBags, TheTimeBetweenFramesMustBeGivenAndSuitTheCamera) {
   }
   options_.dt = kDt / kImagesPerFrame;
   EXPECT_EQ(read().data.numFrames(), kFrames * kImagesPerFrame);
+  options_.dt = 0.5;
+  EXPECT_TRUE(notes({{"images come every 0.0333 s", "data_set/dt = 0.5 s uses 5 of 60"}}));
+  options_.dt = 10.0;  // a rate [Hz] instead
+  EXPECT_TRUE(isRefused({"every 0.0333 s", "data_set/dt = 10 s uses 1 of 60", "in seconds"}));
 }
 
 TEST_F(OtherBags, OtherClocksAreRefusedWithBothSpans) {

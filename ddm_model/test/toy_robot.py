@@ -62,11 +62,11 @@ def write_bag(path, num_frames=150, seed=1, size=SIZE, channels=1, image_topic="
     return np.array(images), np.array(torques)
 
 
-def train(folder, bags, model_options="", training_options=""):
-    """Trains on bags, with more keys of the blocks model and training. Returns the path of the model."""
+def train(folder, bags, model_options="", training_options="", more=()):
+    """Trains on bags, with more keys of the blocks model and training, and more options. Returns the path of the model."""
     config, out = os.path.join(str(folder), "toy.yaml"), os.path.join(str(folder), "toy.ddm")
     with open(config, "w") as stream:
         stream.write(CONFIG % (model_options, training_options))
-    code, output = call("train_from_bags", "--config", config, "--out", out, *bags)
+    code, output = call("train_from_bags", "--config", config, "--out", out, *more, *bags)
     assert code == 0, output
     return out

@@ -147,6 +147,14 @@ TEST_F(TrainFromBags, RefusesAConfigurationWithMistakesAndNamesThem) {
   EXPECT_FALSE(fs::exists(path("new.model")));
 }
 
+TEST_F(TrainFromBags, RefusesAModelThatItCannotWriteAndAGoalThatItCannotReadBeforeItReadsBags) {
+  const Outcome model = run("--config toy.yaml --out no_folder/new.model missing.bag");
+  EXPECT_EQ(model.exit_code, 1);
+  EXPECT_TRUE(testing::names(model.err, {"cannot write no_folder/new.model", "No such file"}));
+  EXPECT_TRUE(testing::names(train("--goal goal.png missing.bag").err,
+                             {"cannot read goal.png", "No such file"}));
+}
+
 TEST_F(TrainFromBags, LeavesTheOldModelWhereTheNewOneCannotBeWritten) {
   write("new.model", "old");
   const Outcome outcome = train("a.bag", "trap '' XFSZ && ulimit -f 2 && ");  // like a full disk

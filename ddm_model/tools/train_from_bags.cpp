@@ -66,12 +66,14 @@ void run(const Arguments& arguments) {
   ddm::ParamReader params(blocks, arguments.files());
   const ddm::ModelConfig config = ddm::readModelConfig(&params);
   params.requireValid();
+  ddm::requireWritable(arguments.out);
+  ddm::Image goal;  // empty: none is given
+  if (!arguments.goal.empty()) {
+    goal = ddm::greyOf(ddm::readImageFile(arguments.goal), config.image.size, config.data_set);
+  }
   const auto warn = [](const std::string& note) { std::cerr << "warning: " << note << "\n"; };
   ddm::DataSet data = ddm::BagCache(config.image.size, config.data_set, warn).read(arguments.bags);
-  if (!arguments.goal.empty()) {
-    data.setGoal(
-        ddm::greyOf(ddm::readImageFile(arguments.goal), config.image.size, config.data_set));
-  }
+  if (!goal.empty()) data.setGoal(goal);
   const Eigen::VectorXd limits =
       ddm::perMotor(config.model.max_torque, data.torqueDim(), "model/max_torque");
   Eigen::Index motor = 0;

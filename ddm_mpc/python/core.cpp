@@ -22,7 +22,12 @@ class Controller {
     own["mpc"] = toYaml(MpcOptions());
     own["controller"] = toYaml(ControllerOptions());
     YAML::Node blocks = mergedBlocks(layers, options, own);
-    if (takeOverLimits("mpc", &blocks) == "the default" && model_) {
+    if (takeOverLimits("mpc", &blocks) == "the default") {
+      if (!model_) {
+        throw py::value_error(
+            "max_torque must be given where there is neither plant nor model: the limit of each "
+            "motor [N m]");
+      }
       blocks["mpc"]["max_torque"] = valueToYaml(model_->options().max_torque);
     }
     ParamReader reader(blocks);

@@ -4,6 +4,7 @@ import argparse
 import os
 
 import numpy as np
+import yaml
 
 import ddm_model
 from ddm_model import inspection
@@ -12,9 +13,9 @@ from ddm_model.model_data import read_bags
 IMAGE_SIZE = 51  # [pixels]
 
 
-def episodes_in(path):
+def episodes_in(path, data_set):
     """Pairs (images [T, H, W], torques [T, m]) without gaps."""
-    bag = read_bags([path], IMAGE_SIZE)[0]
+    bag = read_bags([path], IMAGE_SIZE, data_set=data_set)[0]
     ends = np.cumsum(bag["segment_sizes"])[:-1]
     return list(zip(np.split(bag["images"], ends), np.split(bag["torques"], ends)))
 
@@ -24,11 +25,15 @@ def main():
     parser.add_argument("bags", nargs="+", metavar="BAG")
     parser.add_argument("--preset", default="efficient")
     parser.add_argument("--max-torque", type=float, nargs="+", required=True, help="limit of each motor [N m]")
+    parser.add_argument("--config", type=argparse.FileType(), help="YAML file whose block data_set says how to read the bags")
     parser.add_argument("--out", default="report", help="folder of model and report")
     args = parser.parse_args()
-    episodes = [episode for path in args.bags[:-1] for episode in episodes_in(path)]
+    if len(args.bags) < 2:
+        parser.error("give at least two bags, got %s: the last one is not learned from" % args.bags[0])
+    data_set = (yaml.safe_load(args.config) or {}).get("data_set", {}) if args.config else {}
+    episodes = [episode for path in args.bags[:-1] for episode in episodes_in(path, data_set)]
     print("%d episodes with %d images" % (len(episodes), sum(len(images) for images, _ in episodes)))
-    model = ddm_model.train(episodes, goal=None, preset=args.preset, max_torque=args.max_torque)
+    model = ddm_model.train(episodes, goal=None, preset=args.preset, max_torque=args.max_torque, data_set=data_set)
     os.makedirs(args.out, exist_ok=True)
     path = os.path.join(args.out, "model.ddm")
     model.save(path)

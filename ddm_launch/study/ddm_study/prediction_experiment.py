@@ -51,7 +51,7 @@ def rollouts(model, features, torques):
     these images [S], features of these images and predicted features [S x MAX_STEPS + 1 x d])."""
     n = model.options["order"]
     starts = np.arange(n - 1, NUM_HELD_OUT - MAX_STEPS)
-    ahead = [model.rollout(features[now - n + 1:now + 1], torques[now - n + 1:now + MAX_STEPS]) for now in starts]
+    ahead = [model.roll_out(features[now - n + 1:now + 1], torques[now - n + 1:now + MAX_STEPS]) for now in starts]
     return starts, np.concatenate([features[starts, None], ahead], axis=1)
 
 

@@ -207,6 +207,7 @@ BagFile::BagFile(std::istream* in) : in_(in) {
       }
     }
   }
+  bytes_behind_index_ = left.left();
 }
 
 /// @return bytes [begin, end) of the file

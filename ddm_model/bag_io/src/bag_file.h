@@ -48,6 +48,9 @@ class BagFile {
   /// @return all connections, by their numbers in the file
   const std::map<std::uint32_t, BagConnection>& connections() const { return connections_; }
 
+  /// @return number of bytes behind the index, which belong to nothing in the index
+  std::uint64_t bytesBehindIndex() const { return bytes_behind_index_; }
+
   /// Calls `take` with each message of these topics, in the order of the file. Skips chunks without
   /// these topics.
   void forEachMessage(const std::set<std::string>& topics,
@@ -58,6 +61,7 @@ class BagFile {
 
   std::istream* in_;
   std::uint64_t index_ = 0;  // position of the index, after the last chunk
+  std::uint64_t bytes_behind_index_ = 0;
   // Connections in each chunk, by position of the chunk.
   std::map<std::uint64_t, std::set<std::uint32_t>> chunks_;
   std::map<std::uint32_t, BagConnection> connections_;

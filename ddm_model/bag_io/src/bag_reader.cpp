@@ -16,7 +16,6 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <map>
 #include <utility>
 
@@ -93,14 +92,6 @@ BagImages decodeImages(BagFile* bag, const BagTopics& topics, const Pairs& pairs
   return out;
 }
 
-/// @return hash of time, image and torque of a sample
-std::size_t idOf(const Image& grey, const Pairs::Frame& frame) {
-  std::string bytes(grey.begin(), grey.end());
-  bytes.append(reinterpret_cast<const char*>(frame.torque.data()),
-               frame.torque.size() * sizeof(double));
-  return std::hash<std::string>()(bytes + timeText(frame.time));
-}
-
 /// @return all samples, with notes to the user
 /// @throws std::runtime_error if more images are broken than whole
 BagContent contentOf(const Pairs& pairs, const BagImages& images, int image_size) {
@@ -119,7 +110,6 @@ BagContent contentOf(const Pairs& pairs, const BagImages& images, int image_size
     darkest = std::min<int>(darkest, *range.first);
     brightest = std::max<int>(brightest, *range.second);
     times.push_back(frame.time);
-    if (pairs.of_others) content.frame_ids.push_back(idOf(grey, frame));
     content.data.append(grey, Eigen::Map<const Eigen::VectorXd>(frame.torque.data(), torque_dim),
                         new_segment);
     new_segment = false;
@@ -134,6 +124,7 @@ BagContent contentOf(const Pairs& pairs, const BagImages& images, int image_size
   content.interval = medianInterval(times);
   content.images_without_torque = sinceFirst(pairs.images_without_torque, 0.0);
   content.torques_without_image = sinceFirst(pairs.torques_without_image, pairs.lag);
+  if (pairs.of_others) content.ids = pairs.ids;
   content.notes = pairs.notes;
   if (pairs.of_others && content.data.torques().isZero(0.0)) {
     content.notes.emplace_back("all its torques are 0: record what commands the motors");
@@ -226,16 +217,19 @@ void DifferentBags::require(const std::string& path, const BagContent& content) 
                 kRemedy);
     }
   }
-  std::map<std::string, std::size_t> shared;  // number of samples in both, by path of the other bag
-  for (const std::size_t id : content.frame_ids) {
-    const auto added = frames_.emplace(id, path);
+  std::map<std::string, std::size_t> shared;  // number of images in both, by path of the other bag
+  for (const std::size_t id : content.ids) {
+    const auto added = images_.emplace(id, path);
     if (!added.second && added.first->second != path) ++shared[added.first->second];
   }
-  const std::size_t all = content.frame_ids.size();
+  const std::size_t all = content.ids.size();
+  num_images_[path] = all;
   for (const auto& [other, number] : shared) {
-    if (10 * number <= all) continue;
-    refuseBag("bag ", path, ": ", number, " of its ", all, " frames are also in bag ", other,
-              ", with the same times", kRemedy, ", or split the recording without an overlap");
+    const std::size_t smaller = std::min(all, num_images_.at(other));
+    if (10 * number <= smaller) continue;
+    refuseBag("bag ", path, ": ", number, " of its ", all, " images are also among the ",
+              num_images_.at(other), " of bag ", other, ", with the same times", kRemedy,
+              ", or split the recording without an overlap");
   }
 }
 

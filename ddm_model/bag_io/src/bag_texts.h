@@ -12,6 +12,10 @@
 
 namespace ddm {
 
+/// Remedy if a bag has one time twice.
+constexpr char kOneRunPerBag[] =
+    "record each run of a simulation, whose time begins anew, in a bag of its own";
+
 /// @return a time as text, such as "1700000000.020000 s"
 inline std::string timeText(const ros::Time& time) { return std::to_string(time.toSec()) + " s"; }
 

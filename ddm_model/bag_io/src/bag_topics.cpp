@@ -83,42 +83,43 @@ Topic requireTopic(const BagFile& bag, const std::string& name, const Names& typ
             "): record it, or set data_set/", key);
 }
 
-/// Messages of a topic by one publisher.
-struct Published {
-  ros::Time first, last;
-  std::size_t number = 0;
+constexpr double kPause = 3.0;  // shortest time without messages / median interval
 
-  void add(const ros::Time& time) {
-    first = number == 0 ? time : std::min(first, time);
-    last = std::max(last, time);
-    ++number;
-  }
-};
-using Publishers = std::map<std::string, Published>;  // by name of the node
+/// Times of the messages of a topic, by name of the node that published them.
+using Publishers = std::map<std::string, std::vector<ros::Time>>;
+
+/// Whether a publisher published while another one was publishing, i.e. not in a pause of it.
+/// @param times, others  of both, sorted
+bool isAmong(const std::vector<ros::Time>& times, const std::vector<ros::Time>& others) {
+  const double pause = kPause * medianInterval(others);
+  return std::any_of(times.begin(), times.end(), [&](const ros::Time& time) {
+    const auto next = std::upper_bound(others.begin(), others.end(), time);
+    return next != others.begin() && next != others.end() &&
+           secondsBetween(*std::prev(next), *next) < pause;
+  });
+}
 
 /// Checks that no two publishers published at the same time. Adds a note if several published, one
-/// after the other. Ignores publishers without a name, which rosbag omits in some latched messages.
+/// after the other or in turns. Ignores publishers without a name, which rosbag omits in some
+/// latched messages.
 /// @param what    beginning of the message, before the publishers
 /// @param remedy  remedy for two publishers at the same time
 /// @throws std::runtime_error if two published at the same time
-void requireOneAtATime(const Publishers& publishers, const std::string& what,
-                       const std::string& remedy, Names* notes) {
-  std::vector<Publishers::value_type const*> named;
-  for (const auto& publisher : publishers) {
-    if (!publisher.first.empty()) named.push_back(&publisher);
+void requireOneAtATime(Publishers publishers, const std::string& what, const std::string& remedy,
+                       Names* notes) {
+  publishers.erase("");
+  if (publishers.size() < 2) return;
+  for (auto& publisher : publishers) {
+    std::sort(publisher.second.begin(), publisher.second.end());
   }
-  if (named.size() < 2) return;
-  std::sort(named.begin(), named.end(),
-            [](const auto* a, const auto* b) { return a->second.first < b->second.first; });
   bool overlap = false;
-  ros::Time last;  // of the publishers so far
   Names texts;
-  for (const auto* publisher : named) {
-    const auto& [name, published] = *publisher;
-    texts.push_back(textOf(name, " (", published.number, " from ", timeText(published.first),
-                           " to ", timeText(published.last), ")"));
-    overlap = overlap || (texts.size() > 1 && published.first <= last);
-    last = published.last;
+  for (const auto& [name, times] : publishers) {
+    texts.push_back(textOf(name, " (", times.size(), " from ", timeText(times.front()), " to ",
+                           timeText(times.back()), ")"));
+    for (const auto& [other, others] : publishers) {
+      overlap = overlap || (other != name && isAmong(times, others));
+    }
   }
   const std::string text = what + boost::algorithm::join(texts, " and ");
   if (overlap) refuseBag(text, ": ", remedy);
@@ -173,10 +174,10 @@ Pairs readPairs(BagFile* bag, const BagTopics& topics, const BagOptions& options
   std::vector<BagTorque> torques;
   bag->forEachMessage({topics.images.name, topics.torques.name}, [&](const BagMessage& message) {
     if (message.connection.topic == topics.images.name) {
-      cameras[message.connection.publisher].add(message.recorded);
+      cameras[message.connection.publisher].push_back(message.recorded);
       images.push_back(bagImageOf(message, images.size()));
     } else if (const std::optional<BagTorque> torque = reader.read(message)) {
-      controllers[message.connection.publisher].add(message.recorded);
+      controllers[message.connection.publisher].push_back(message.recorded);
       torques.push_back(*torque);
     }
   });
@@ -189,6 +190,11 @@ Pairs readPairs(BagFile* bag, const BagTopics& topics, const BagOptions& options
               ": leave this bag out, or set data_set/torque_topic and motors");
   }
   Names notes;
+  if (bag->bytesBehindIndex() > 0) {
+    notes.push_back(textOf(bag->bytesBehindIndex(),
+                           " bytes behind its index are not read, such as a second bag that was "
+                           "appended: give each bag as a file of its own"));
+  }
   if (!unknown.empty()) {
     notes.push_back("topic " + topic + ": " + unknown +
                     " have no effort or number of the motors and do not count");

@@ -33,12 +33,32 @@ double usualLag(const std::vector<Message>& messages) {
 }
 
 /// Sorts messages by time of recording. Invalid times are an error, since they cannot be compared.
+/// So is a clock that was set back to a time that it had before: the order of such messages is
+/// lost. Merged bags may be in any order.
+/// @param messages  in the order of the file
 template <class Message>
 void sortByRecording(const char* what, std::vector<Message>* messages) {
+  using Span = std::pair<ros::Time, ros::Time>;  // first and last time
+  std::vector<Span> spans;                       // a new one where the clock was set back
   for (const Message& message : *messages) {
     const std::uint32_t nsec = std::max(message.stamp.nsec, message.recorded.nsec);
-    if (nsec < 1000000000U) continue;
-    refuseBag("a time of ", what, " has ", nsec, " nanoseconds in its second: it is damaged");
+    if (nsec >= 1000000000U) {
+      refuseBag("a time of its ", what, " has ", nsec, " nanoseconds in its second: it is damaged");
+    }
+    const ros::Time& time = message.recorded;
+    if (spans.empty() || secondsBetween(time, spans.back().second) > kLeap) {
+      spans.emplace_back(time, time);
+    }
+    spans.back() = {std::min(spans.back().first, time), std::max(spans.back().second, time)};
+  }
+  std::sort(spans.begin(), spans.end());
+  const auto before = std::adjacent_find(
+      spans.begin(), spans.end(), [](const Span& a, const Span& b) { return b.first < a.second; });
+  if (before != spans.end()) {
+    const Span& again = *std::next(before);
+    refuseBag("its ", what, " were recorded from ", timeText(before->first), " to ",
+              timeText(before->second), " and again from ", timeText(again.first), " to ",
+              timeText(again.second), ", by a clock that was set back: ", kOneRunPerBag);
   }
   std::stable_sort(messages->begin(), messages->end(),
                    [](const Message& a, const Message& b) { return a.recorded < b.recorded; });
@@ -179,8 +199,8 @@ Pairs pairByClocks(std::vector<BagImage> images, std::vector<BagTorque> torques,
 }  // namespace
 
 Pairs pairUp(std::vector<BagImage> images, std::vector<BagTorque> torques, double dt) {
-  sortByRecording("an image", &images);
-  sortByRecording("a torque", &torques);
+  sortByRecording("images", &images);
+  sortByRecording("torques", &torques);
   removeCopies(dt, &images);
   if (images.empty()) refuseBag("its image topic has no message: leave this bag out");
   // BagWriter writes a message at its stamp, other recorders at its arrival.
@@ -218,7 +238,7 @@ Pairs pairUp(std::vector<BagImage> images, std::vector<BagTorque> torques, doubl
     if (pairs.frames[i].new_segment) begins.push_back(i);
   }
   if (of_others && !begins.empty()) {
-    pairs.notes.push_back(textOf("frames are missing at ", begins.size(),
+    pairs.notes.push_back(textOf("frames are missing or late at ", begins.size(),
                                  " place(s), the first after ",
                                  timeText(pairs.frames[begins.front() - 1].time),
                                  ", so that it is split into ", begins.size() + 1, " segments"));

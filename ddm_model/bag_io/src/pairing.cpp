@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "bag_texts.h"
@@ -14,12 +15,28 @@ namespace {
 constexpr double kGap = 1.5;            // gap / median interval
 constexpr double kTolerance = 0.25;     // tolerance of the time of an image / dt
 constexpr double kRateTolerance = 0.1;  // tolerance of the median interval / dt
+constexpr double kFewImages = 10.0;     // dt / time between images, if it should be reported
 
 template <class Item>
 std::vector<ros::Time> timesOf(const std::vector<Item>& items) {
   std::vector<ros::Time> times;
   for (const Item& item : items) times.push_back(item.time);
   return times;
+}
+
+std::vector<double> intervalsOf(const std::vector<ros::Time>& times) {
+  std::vector<double> intervals;
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    intervals.push_back(secondsBetween(times[i - 1], times[i]));
+  }
+  return intervals;
+}
+
+/// @return hash of the time and content of an image, and of its torque if both have one stamp
+std::size_t idOf(const BagImage& image, const std::vector<double>& torque) {
+  std::string bytes = textOf(timeText(image.time), " ", image.content);
+  bytes.append(reinterpret_cast<const char*>(torque.data()), torque.size() * sizeof(double));
+  return std::hash<std::string>()(bytes);
 }
 
 /// @return index of the time that is nearest to `time`
@@ -33,10 +50,18 @@ std::size_t nearest(const std::vector<ros::Time>& times, const ros::Time& time) 
              : at;
 }
 
-/// @return indices of images dt apart, each with whether a new segment begins there
+/// @return indices of images dt apart, each with whether a new segment begins there. If the camera
+///         takes an image every dt, these are all images, even if their times jitter
+/// @param apart  median time between images [s]
 std::vector<std::pair<std::size_t, bool>> pickImages(const std::vector<ros::Time>& times,
-                                                     double dt) {
+                                                     double apart, double dt) {
   std::vector<std::pair<std::size_t, bool>> picked;
+  if (std::abs(apart - dt) <= kRateTolerance * dt) {
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      picked.emplace_back(i, i == 0 || secondsBetween(times[i - 1], times[i]) > kGap * dt);
+    }
+    return picked;
+  }
   for (std::size_t image = 0; image < times.size();) {
     if (!picked.empty()) {
       const ros::Time due = times[picked.back().first] + ros::Duration(dt);
@@ -60,8 +85,9 @@ std::vector<std::pair<std::size_t, bool>> pickImages(const std::vector<ros::Time
 
 /// Refuses images whose rate does not fit dt. Each of them is within the tolerance of the one
 /// before, but samples have another rate, or stand alone in their segments.
+/// @param times  of all images
 /// @param apart  median time between images [s]
-void requireRate(const Pairs& pairs, double apart, double dt) {
+void requireRate(const Pairs& pairs, const std::vector<ros::Time>& times, double apart, double dt) {
   const auto& frames = pairs.frames;
   std::size_t num_alone = 0;
   for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -72,6 +98,14 @@ void requireRate(const Pairs& pairs, double apart, double dt) {
   const bool fits =
       std::abs(interval - dt) <= kRateTolerance * dt && 4 * num_alone <= frames.size();
   if (fits || frames.size() < 2 || apart <= 0.0) return;
+  if (std::abs(std::round(dt / apart) * apart - dt) <= kRateTolerance * dt) {
+    const std::vector<double> intervals = intervalsOf(times);
+    const auto span = std::minmax_element(intervals.begin(), intervals.end());
+    refuseBag("its images come irregularly, from ", secondsText(*span.first), " to ",
+              secondsText(*span.second),
+              " apart, so that few of them are data_set/dt = ", secondsText(dt),
+              " apart: stamp images in the camera, and look for images that are lost on the way");
+  }
   const double multiple = std::max(1.0, std::floor(dt / apart));
   std::ostringstream text;
   text.precision(3);
@@ -84,14 +118,12 @@ void requireRate(const Pairs& pairs, double apart, double dt) {
 }  // namespace
 
 Pairs pairByStamp(const std::vector<BagImage>& images, std::vector<BagTorque> torques) {
-  static constexpr char kRuns[] =
-      ", and record each run of a simulation, whose time begins anew, in a bag of its own";
   const auto byStamp = [](const BagTorque& a, const BagTorque& b) { return a.stamp < b.stamp; };
   std::stable_sort(torques.begin(), torques.end(), byStamp);
   const auto isSame = [](const BagTorque& a, const BagTorque& b) {
     if (a.stamp == b.stamp && a.torque != b.torque) {
       refuseBag("two different torques of data_set/torque_topic have the stamp ", timeText(a.stamp),
-                ": stamp each with the image it answers", kRuns);
+                ": stamp each with the image it answers, and ", kOneRunPerBag);
     }
     return a.stamp == b.stamp;
   };
@@ -110,10 +142,12 @@ Pairs pairByStamp(const std::vector<BagImage>& images, std::vector<BagTorque> to
     auto is_paired = paired[static_cast<std::size_t>(torque - torques.begin())];
     if (is_paired) {
       refuseBag("two different images of data_set/image_topic have the stamp ",
-                timeText(image.stamp), ": let the camera stamp each image anew", kRuns);
+                timeText(image.stamp), ": let the camera stamp each image anew, and ",
+                kOneRunPerBag);
     }
     is_paired = true;
     pairs.frames.push_back({image.number, image.time, torque->torque, new_segment});
+    pairs.ids.push_back(idOf(image, torque->torque));
     new_segment = false;
   }
   for (std::size_t i = 0; i < torques.size(); ++i) {
@@ -138,8 +172,17 @@ Pairs pairInTime(const std::vector<BagImage>& images, std::vector<BagTorque> tor
                    [](const BagTorque& a, const BagTorque& b) { return a.time < b.time; });
   const std::vector<ros::Time> times = timesOf(torques);
   const double usual_age = std::max(dt, kGap * medianInterval(times));
-  const auto picked = pickImages(image_times, dt);
+  const auto picked = pickImages(image_times, apart, dt);
   Pairs pairs;
+  if (images.size() > 1 && (picked.size() < 2 || dt > kFewImages * apart)) {
+    const std::string text =
+        textOf("its images come every ", secondsText(apart),
+               ", so that data_set/dt = ", secondsText(dt), " uses ", picked.size(), " of ",
+               images.size(), ": set it (--dt) to the time between samples, in seconds");
+    if (picked.size() < 2) refuseBag(text);
+    pairs.notes.push_back(text);
+  }
+  for (const BagImage& image : images) pairs.ids.push_back(idOf(image, /*torque=*/{}));
   std::size_t next_torque = 0;  // first torque that is not used or dropped yet
   std::size_t num_held = 0;     // samples whose torque is older than usual
   double longest_held = 0.0;    // age of the oldest torque at the end of its sample [s]
@@ -167,7 +210,7 @@ Pairs pairInTime(const std::vector<BagImage>& images, std::vector<BagTorque> tor
   pairs.torques_without_image.insert(pairs.torques_without_image.end(),
                                      times.begin() + static_cast<std::ptrdiff_t>(next_torque),
                                      times.end());
-  requireRate(pairs, apart, dt);
+  requireRate(pairs, image_times, apart, dt);
   if (!pairs.images_without_torque.empty()) {
     pairs.notes.push_back(
         textOf(pairs.images_without_torque.size(),
@@ -190,10 +233,7 @@ double median(std::vector<double> values) {
 }
 
 double medianInterval(const std::vector<ros::Time>& times) {
-  std::vector<double> intervals;
-  for (std::size_t i = 1; i < times.size(); ++i) {
-    intervals.push_back(secondsBetween(times[i - 1], times[i]));
-  }
+  const std::vector<double> intervals = intervalsOf(times);
   return intervals.empty() ? 0.0 : median(intervals);
 }
 

@@ -60,6 +60,7 @@ struct Pairs {
   std::vector<ros::Time> torques_without_image{};
   double lag = 0.0;                  ///< clock of the torques minus clock of the images [s]
   bool of_others = false;            ///< whether another program recorded the bag
+  std::vector<std::size_t> ids{};    ///< see BagContent
   std::vector<std::string> notes{};  ///< messages to the user
 
   std::vector<ros::Time> times() const;
@@ -73,10 +74,12 @@ Pairs pairByStamp(const std::vector<BagImage>& images, std::vector<BagTorque> to
 
 /// Takes images dt apart, with a tolerance of dt/4, each with the torque that is in force when the
 /// next image is due. Controllers hold a torque, so that it is in force until the next torque. A
-/// new segment begins if an image is missing.
+/// new segment begins if an image is missing. If images are about dt apart, all of them are taken,
+/// and a new segment begins after a gap of more than 1.5 dt.
 /// @param images  in order of time
 /// @param dt      sampling time, > 0 [s]
-/// @throws std::runtime_error if dt is not about a multiple of the time between images
+/// @throws std::runtime_error if dt is not about a multiple of the time between images, or if only
+///         one of several images is taken
 Pairs pairInTime(const std::vector<BagImage>& images, std::vector<BagTorque> torques, double dt);
 
 /// Chooses the times that count, and pairs images and torques: by equal stamps if dt is 0,
@@ -85,7 +88,8 @@ Pairs pairInTime(const std::vector<BagImage>& images, std::vector<BagTorque> tor
 /// @param images, torques  in the order of the file
 /// @param dt               sampling time [s]
 /// @return                 at least one sample
-/// @throws std::runtime_error like the functions above, and if there is no sample
+/// @throws std::runtime_error like the functions above, if there is no sample, and if the clock of
+///         the recording was set back to a time that it had before
 Pairs pairUp(std::vector<BagImage> images, std::vector<BagTorque> torques, double dt);
 
 }  // namespace ddm

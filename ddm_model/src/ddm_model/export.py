@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import argparse
 import io
+import os
 import sys
 
 import numpy as np
@@ -28,8 +29,9 @@ def main(arguments=None):
         prog="export",
         description="Writes a model's PCA, all weights and biases, options and goal as NumPy arrays, for those without "
         "this package. With it, ddm_model.load() of Python encodes, decodes and predicts.")
-    parser.add_argument("--model", metavar="FILE", required=True, help="model file")
-    parser.add_argument("--out", metavar="FILE.npz", required=True, help="file to write")
+    path = os.path.expanduser  # a shell does not expand --out=~/x
+    parser.add_argument("--model", metavar="FILE", type=path, required=True, help="model file")
+    parser.add_argument("--out", metavar="FILE.npz", type=path, required=True, help="file to write")
     options = parser.parse_args(arguments)
     try:
         arrays = export(options.model, options.out)

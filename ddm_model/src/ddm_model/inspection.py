@@ -125,13 +125,15 @@ def main(arguments=None):
         description="Tells what a model is and, given bags, how well it describes and predicts them. DIR/report.html is "
         "a self-contained file; the numbers behind it are CSV and YAML files. The verdict names each check that "
         "fails, what was measured, the rule and what to do.")
-    parser.add_argument("--model", metavar="FILE", required=True, help="model file")
-    parser.add_argument("--out", metavar="DIR", required=True, help="folder of the report; made if need be")
+    path = os.path.expanduser  # a shell does not expand --out=~/x
+    parser.add_argument("--model", metavar="FILE", type=path, required=True, help="model file")
+    parser.add_argument("--out", metavar="DIR", type=path, required=True, help="folder of the report; made if need be")
     parser.add_argument("--steps", type=int, default=15, help="longest prediction (%(default)s, as plans are)")
     for name, form in READ_BAGS_OPTIONS.items():
-        parser.add_argument("--" + name, metavar=form, action="append", default=[], help="as for read_bags")
-    parser.add_argument("bags", metavar="BAG", nargs="*", help="bags with images and torques, best such that the "
-                        "model has not learned from. Images are brought to the model's size")
+        parser.add_argument("--" + name, metavar=form, action="append", default=[],
+                            help="as for read_bags; default: as the model's own bags were read")
+    parser.add_argument("bags", metavar="BAG", nargs="*", type=path, help="bags with images and torques, best such that "
+                        "the model has not learned from. Images are brought to the model's size")
     options = parser.parse_args(arguments)
     if not 1 <= options.steps <= 1000:
         parser.error("--steps must lie in [1, 1000], got %d" % options.steps)

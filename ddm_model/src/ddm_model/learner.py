@@ -30,14 +30,15 @@ def _file(kind, package, folder, name):
 def layers(preset, plant):
     """The configuration of preset and plant, for the C++ core: paths of YAML files, or dictionaries of blocks.
 
-    preset, plant: as for train(). Raises TypeError or ValueError.
+    preset, plant: as for train(). Raises TypeError or ValueError, and OSError if the file of the plant cannot be read.
     """
-    plant = getattr(plant, "configuration", plant)
+    plant = getattr(getattr(plant, "unwrapped", plant), "configuration", plant)  # Gymnasium wraps environments
     if not isinstance(preset, str) or not isinstance(plant, (str, dict, type(None))):
         raise TypeError("preset must be a name, and plant a name, a path or an environment, got %r and %r" % (preset, plant))
     found = [_file("preset", "ddm_launch", os.path.join("config", "presets"), preset)]
     if isinstance(plant, str) and plant.endswith(".yaml"):
         plant = os.path.abspath(plant)
+        open(plant, "rb").close()  # raises OSError
     elif isinstance(plant, str):
         package, _, name = plant.rpartition("/")
         plant = _file("plant", package or "ddm_sim", "config", name)
@@ -63,7 +64,8 @@ def train(episodes, goal, preset="efficient", plant=None, progress=None, seed=0,
       (training={"num_starts": 1}). They override preset and plant. ddm_model/config/model.yaml explains all keys.
 
     Other Python threads run during the training. Ctrl-C stops it and raises KeyboardInterrupt.
-    Raises TypeError or ValueError, which names argument, value and rule, and RuntimeError if the training fails.
+    Raises TypeError or ValueError, which names argument, value and rule, OSError if the file of the plant cannot be
+    read, and RuntimeError if the training fails.
 
     Example:
       model = ddm_model.train([(images, torques)], goal, plant="pendulum")

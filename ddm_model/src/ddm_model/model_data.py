@@ -19,18 +19,22 @@ class ModelDataError(Exception):
     """A bag cannot be read, or belongs to a robot with another number of motors than the model."""
 
 
-def read_bags(paths, image_size, options=()):
+def read_bags(paths, image_size, options=(), data_set=None):
     """Reads bags by the program read_bags. Returns a dictionary for each bag: camera, interval_s, goal, segment_sizes,
     notes, torque_dim, images [N x size x size], torques [N x torque_dim, N m], times of the images [s], and the times
     of images without torque and of torques without image [s].
 
+    options: of the program read_bags; they override data_set, a block `data_set` as a dictionary.
     Raises ModelDataError if the program is missing or fails; the program prints its errors on standard error.
     """
     programs = roslib.packages.find_node("ddm_model", "read_bags")
     if not programs:
         raise ModelDataError("the program read_bags is not there: build the workspace, then source its setup.bash")
     with tempfile.TemporaryDirectory() as folder:
-        command = [programs[0], "--image-size", str(image_size), "--out", folder, *options, "--", *paths]
+        config = os.path.join(folder, "data_set.yaml")
+        with open(config, "w") as stream:
+            yaml.safe_dump({"data_set": data_set or {}}, stream)
+        command = [programs[0], "--image-size", str(image_size), "--out", folder, "--config", config, *options, "--", *paths]
         if subprocess.run(command, stdin=subprocess.DEVNULL).returncode != 0:
             raise ModelDataError("nothing was written")
         return [_read_arrays(os.path.join(folder, str(i)), image_size) for i in range(len(paths))]
@@ -144,8 +148,8 @@ class ModelData:
     """
 
     def __init__(self, model, bags=(), steps=15, options=(), say=lambda text: None):
-        """steps: length of the longest rollout. options: options of read_bags. say: function that is called with
-        progress messages.
+        """steps: length of the longest rollout. options: options of read_bags, which override the data_set of the
+        model. say: function that is called with progress messages.
 
         Raises ModelDataError if a bag cannot be read or belongs to another robot.
         """
@@ -162,7 +166,8 @@ class ModelData:
 
     def _read_bags(self, paths, options):
         """Reads all bags. Returns the sizes of all segments and the times of all frames [s]."""
-        bags = read_bags(paths, self.model.image_size, options)
+        own = yaml.safe_load(self.model.info["config"]) or {}
+        bags = read_bags(paths, self.model.image_size, options, own.get("data_set"))
         for path, bag in zip(paths, bags):
             if bag["torque_dim"] != self.model.torque_dim:
                 raise ModelDataError("bag %s: has %d torque(s) a frame, the model has %d: it is of another robot" % (

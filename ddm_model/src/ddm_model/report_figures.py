@@ -30,12 +30,12 @@ def as_data_uri(figure):
     return "data:image/png;base64," + base64.b64encode(stream.getvalue()).decode("ascii")
 
 
-def new_axes(height, columns=1):
-    figure, axes = plt.subplots(1, columns, figsize=(WIDTH, height), constrained_layout=True, squeeze=False)
-    for one in axes[0]:
+def new_axes(height, columns=1, rows=1):
+    figure, axes = plt.subplots(rows, columns, figsize=(WIDTH, height), constrained_layout=True, squeeze=False)
+    for one in axes.flat:
         one.grid(True, color=LIGHT, linewidth=0.6)
         one.set_axisbelow(True)
-    return figure, axes[0]
+    return figure, axes.ravel()
 
 
 def draw_spectrum(data):
@@ -129,7 +129,9 @@ def draw_plane(data):
 
 def draw_pairing(data):
     """Draws the times of frames, and of images and torques without a partner. Each bag has a row."""
-    names = [os.path.basename(path) for path in data.bags["bag"]]
+    paths = [os.path.abspath(path) for path in data.bags["bag"]]
+    folder = os.path.commonpath([os.path.dirname(path) for path in paths])
+    names = [os.path.relpath(path, folder) for path in paths]  # bags of trials differ only in their folders
     figure, (axes,) = new_axes(min(0.9 + 0.3 * len(names), MAX_HEIGHT))
     kinds = {"frames": (data.frames["bag"], data.frames["time_s"]), **data.unpaired}
     for (label, (bags, times)), colour, shift in zip(kinds.items(), (GREY, VERMILLION, BLUE), (0.0, -0.3, 0.3)):
@@ -145,13 +147,16 @@ def draw_coverage(data):
     series = [("feature $z_{%d}$" % (i + 1), column, None) for i, column in enumerate(data.features.T)]
     series += [("torque $u_{%d}$ [N m]" % (i + 1), column, limit)
                for i, (column, limit) in enumerate(zip(data.torques.T, data.max_torque))]
-    series = series[:6]
-    figure, axes = new_axes(2.6, columns=len(series))
+    columns, rows = min(6, len(series)), (len(series) + 5) // 6
+    figure, axes = new_axes(min(2.6 * rows, MAX_HEIGHT), columns, rows)
+    for one in axes[len(series):]:
+        one.remove()
     for one, (label, values, limit) in zip(axes, series):
         one.hist(values, bins=30, color=BLUE)
         one.yaxis.set_major_locator(MaxNLocator(nbins=6, integer=True))
         one.set_xlabel(label)
         for line in () if limit is None else (-limit, limit):
             one.axvline(line, color=GREY, linestyle="--")
-    axes[0].set_ylabel("frames")
+    for one in axes[::columns]:
+        one.set_ylabel("frames")
     return figure

@@ -84,7 +84,8 @@ def judge_data(data, check):
           "lost on the way (rostopic hz, a larger queue, image compression).")
     cameras = sorted(set(data.bags["camera"]))
     check("One camera setting", len(cameras) == 1, "images are " + ", ".join(cameras),
-          "one size and encoding: training refuses to mix them", "Leave out the bags of other cameras, or record them again.")
+          "one size and encoding: training refuses to mix them, unless data_set/dt or crop is set",
+          "Leave out the bags of other cameras, or record them again.")
     check("Images differ", data.variation >= VARIATION,
           "a pixel is %.3g grey away from its mean (root mean square; black 0, white 1)" % data.variation,
           "at least %g, about the noise of a camera: there must be something to see" % VARIATION,

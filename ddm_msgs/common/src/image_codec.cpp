@@ -271,6 +271,7 @@ sensor_msgs::Image encodeImage(const std::vector<std::uint8_t>& grey, int size,
 }
 
 sensor_msgs::Image readImageFile(const std::string& path) {
+  requirePlainFile(path);
   const cv::Mat grey = cv::imread(path, cv::IMREAD_GRAYSCALE);
   if (grey.empty()) {
     throw std::invalid_argument(path + " cannot be read as an image: give a PNG or PGM file");

@@ -35,8 +35,13 @@ mode_t kindOf(const std::string& path) {
 
 /// Opens a new file next to `path`, under a name that no other process or thread uses. Unlike
 /// mkstemp(), the umask determines the permissions.
-/// @return the file descriptor, or a negative number with errno set
+/// @return the file descriptor
+/// @throws std::runtime_error if that fails, or if `path` exists and is not a regular file
 int openUnfinished(const std::string& path, std::string* unfinished) {
+  const mode_t kind = kindOf(path);
+  if (kind != 0 && kind != S_IFREG) {
+    throw std::runtime_error("cannot write " + path + ": it is not a regular file");
+  }
   std::random_device random;
   int file = -1;
   do {
@@ -45,6 +50,7 @@ int openUnfinished(const std::string& path, std::string* unfinished) {
     *unfinished = name.str();
     file = ::open(unfinished->c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
   } while (file < 0 && errno == EEXIST);
+  if (file < 0) cannot("write", path);
   return file;
 }
 
@@ -106,14 +112,15 @@ std::string readFile(const std::string& path) {
   return bytes.str();
 }
 
+void requireWritable(const std::string& path) {
+  std::string unfinished;
+  ::close(openUnfinished(path, &unfinished));
+  ::unlink(unfinished.c_str());
+}
+
 void writeFileAtomically(const std::string& path, const std::string& bytes) {
-  const mode_t kind = kindOf(path);
-  if (kind != 0 && kind != S_IFREG) {
-    throw std::runtime_error("cannot write " + path + ": it is not a regular file");
-  }
   std::string unfinished;
   const int file = openUnfinished(path, &unfinished);
-  if (file < 0) cannot("write", path);
   int error = writeAll(file, bytes) && ::fsync(file) == 0 ? 0 : errno;
   if (::close(file) != 0 && error == 0) error = errno;
   if (error == 0 && !renameAndStore(unfinished, path)) error = errno;

@@ -148,6 +148,20 @@ TEST_F(PlainFile, WhatIsNotARegularFileIsNeitherReplacedNorWaitedFor) {
   EXPECT_TRUE(isNotWritten("/proc/self", "regular file"));
 }
 
+TEST_F(PlainFile, WhetherItCanBeWrittenIsTriedWithoutAChange) {
+  const auto isRefused = [](const std::string& path, const std::string& why) {
+    return testing::throwsNaming<std::runtime_error>([&] { requireWritable(path); }, {path, why});
+  };
+  EXPECT_NO_THROW(requireWritable(path_));
+  EXPECT_EQ(files(), std::vector<std::string>{});
+  writeFileAtomically(path_, "old");
+  EXPECT_NO_THROW(requireWritable(path_));
+  EXPECT_EQ(readFile(path_), "old");
+  EXPECT_EQ(files(), std::vector<std::string>{"a.model"});
+  EXPECT_TRUE(isRefused(folder_.file("missing/a"), "No such file"));
+  EXPECT_TRUE(isRefused(folder_.file(""), "regular file"));
+}
+
 TEST_F(PlainFile, AFileThatCannotBeReadIsNamed) {
   EXPECT_TRUE(isNotRead(path_, "No such file"));
   EXPECT_TRUE(isNotRead(folder_.file(""), "Is a directory"));

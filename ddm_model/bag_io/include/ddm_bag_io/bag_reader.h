@@ -55,9 +55,10 @@ struct BagContent {
   DataSet data;                 ///< samples, and the goal image if there is one
   std::string camera;           ///< size and encoding of the images, such as "51x51 mono8"
   std::vector<double> times{};  ///< time of each sample since the first one [s]
-  /// Hash of time, image and torque of each sample. Empty for bags that DDM recorded, because each
-  /// run of a simulator may begin at the same time.
-  std::vector<std::size_t> frame_ids{};
+  /// Hash of time and content of each image, also of those that are in no sample. With
+  /// ddm_msgs/Torque: of time, image and torque of each sample. Empty for bags that DDM recorded,
+  /// because episodes of a simulator may begin at the same time and be equal.
+  std::vector<std::size_t> ids{};
   double interval = 0.0;  ///< median time between samples [s]; 0 if there is only one
   std::vector<double> images_without_torque{};  ///< times since the first sample [s]
   std::vector<double> torques_without_image{};  ///< times since the first sample [s]
@@ -86,26 +87,29 @@ struct BagContent {
 /// @throws std::runtime_error that names the bag, the fault and the remedy. Faults: the bag is
 ///         unreadable, truncated, or still *.active; a topic is missing or has another type; images
 ///         change size or encoding; more images are broken than whole; torques are not finite or
-///         change dimension; no image has a torque; images are farther apart than dt; two nodes
-///         publish torques or images at the same time
+///         change dimension; no image has a torque; images are farther apart than dt, or so close
+///         together that only one is taken; two nodes publish torques or images at the same time;
+///         the clock of the recording was set back to a time that it had before
 BagContent readBag(const std::string& path, int image_size, const BagOptions& options);
 
 /// Reads a bag from any stream; error messages do not name the bag.
 /// @param in  binary and seekable
 BagContent readBagBytes(std::istream* in, int image_size, const BagOptions& options);
 
-/// Detects bags that share samples: one file under two paths, copies, or overlapping recordings.
+/// Detects bags that share images: one file under two paths, copies, or overlapping recordings.
 class DifferentBags {
  public:
   /// Compares a bag with all bags of earlier calls.
-  /// @throws std::runtime_error if the file, or more than a tenth of its samples, occurred before
+  /// @throws std::runtime_error if the file occurred before, or if the bag shares more than a tenth
+  ///         of the images of the smaller bag with another
   void require(const std::string& path, const BagContent& content);
 
  private:
   // Path, by device and inode.
   std::map<std::pair<std::uintmax_t, std::uintmax_t>, std::string> files_;
-  // Path of the bag, by hash of the sample.
-  std::unordered_map<std::size_t, std::string> frames_;
+  // Path of the bag, by BagContent::ids.
+  std::unordered_map<std::size_t, std::string> images_;
+  std::map<std::string, std::size_t> num_images_;  // of each bag, by path
 };
 
 }  // namespace ddm

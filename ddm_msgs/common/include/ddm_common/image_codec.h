@@ -62,7 +62,8 @@ sensor_msgs::Image encodeImage(const std::vector<std::uint8_t>& grey, int size,
                                const ros::Time& stamp, const std::string& frame_id);
 
 /// Reads an image file as grey values at its own size; any format that OpenCV reads.
-/// @throws std::invalid_argument with the path if the file is not an image
+/// @throws std::runtime_error with the path if there is no such regular file, std::invalid_argument
+///         with the path if the file is not an image
 sensor_msgs::Image readImageFile(const std::string& path);
 
 /// Writes an image file; the suffix of the path determines the format.

@@ -15,6 +15,10 @@ void requirePlainFile(const std::string& path);
 /// @throws std::runtime_error with the path and the reason
 std::string readFile(const std::string& path);
 
+/// Tries to write a file, before the work whose result it is to hold. The file does not change.
+/// @throws std::runtime_error if writeFileAtomically() would refuse this path
+void requireWritable(const std::string& path);
+
 /// Writes bytes to a new file next to `path` and renames it to `path`, so `path` never contains an
 /// incomplete file. If several processes or threads write at once, one of their files remains,
 /// complete. After a power failure, `path` contains the old or the new content; it contains the new
