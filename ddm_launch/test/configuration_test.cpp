@@ -119,8 +119,8 @@ TEST(Configuration, ANameThatDoesNotExistIsRefusedWithThoseThatDo) {
     EXPECT_TRUE(refused(arguments("paper", "pendulum", {name}),
                         {"'" + name + "'", "nuisance/clutter", "oracle/suite_reacher"}));
   }
-  EXPECT_TRUE(refused(arguments("paper", "pendulum", {"nuisance/scene_camera"}),
-                      {"plant/camera_shift"}));  // only plants of a model file have a scene
+  EXPECT_TRUE(refused(arguments("paper", "moving_tile", {"nuisance/thin_rod"}),
+                      {"plant/rod_half_width"}));  // only plants with a rod have one to make thin
   EXPECT_TRUE(throwsNaming<std::invalid_argument>([] { methodKind("oracel"); },
                                                   {"unknown method 'oracel'", "ddm, oracle"}));
   // sim.yaml is in the same folder but describes no plant.
@@ -138,15 +138,10 @@ TEST(Configuration, EveryNamedConfigurationIsReadAndChangesSomething) {
   for (const auto& group : all) {
     for (const auto& one : group.second) {
       const std::string name = one.first.Scalar(), full = group.first.Scalar() + "/" + name;
-      const bool of_scene = name.rfind("scene_", 0) == 0;  // only for plants of a model file
-      const bool of_others = group.first.Scalar() == "launch";
       if (group.first.Scalar() == "oracle") {
         EXPECT_NO_THROW(plantFile(name)) << full;
       }
-      if (of_scene) {
-        EXPECT_EQ(testing::keysOf(one.second), std::vector<std::string>{"plant"}) << full;
-      }
-      if (of_scene || of_others) continue;
+      if (group.first.Scalar() == "launch") continue;
       EXPECT_NE(YAML::Dump(toYaml(read(arguments("efficient", "pendulum", {full})))), plain)
           << full;
     }

@@ -130,9 +130,8 @@ RenderedImage Camera::expose(const RenderedImage& rendered, double brightness,
   if (brightness == 1.0 && !cluttered && options_.noise_std == 0.0) return out;
   if (cluttered && rendered.cover.empty()) {
     throw std::invalid_argument(
-        "camera/clutter must be 0 where the plant's rendered image does not say what it covers; a "
-        "scene "
-        "that a model file describes has nuisances of its own, such as plant/colour_shift");
+        "camera/clutter must be 0 where the plant's rendered image does not say what it covers, as "
+        "that of a model file: add a background to the model file instead");
   }
   if (cluttered && clutter_.size() != rendered.numPixels()) {
     clutter_ = drawClutter(rendered.width, rendered.height, options_.clutter);

@@ -249,6 +249,18 @@ TEST_F(Simulate, NoticesWhenItsOutputCannotBeWritten) {
   const Outcome outcome = run("--plant pendulum > /dev/full", "torque_nm\n1\n");
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_TRUE(contains(outcome.err, "standard output"));
+  EXPECT_EQ(run("--plant pendulum --describe > /dev/full", "").exit_code, 1);
+}
+
+TEST_F(Simulate, TellsThatAPlantFileIsMissingOrHowAModelFileBecomesOne) {
+  const Outcome missing = run("--plant ./robt.yaml", "");
+  EXPECT_EQ(missing.exit_code, 2);
+  EXPECT_TRUE(contains(missing.err, "'./robt.yaml': there is no such file")) << missing.err;
+  for (const char* model : {"./robot.urdf", "robot.xml"}) {
+    const Outcome outcome = run(std::string("--plant ") + model, "");
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_TRUE(contains(outcome.err, std::string("new_plant ") + model)) << outcome.err;
+  }
 }
 
 }  // namespace

@@ -177,15 +177,10 @@ std::string describe(const PlantInfo& info, const std::string& renderer) {
   return YAML::Dump(about) + "\n";
 }
 
-void simulate(const Arguments& arguments) {
-  const std::shared_ptr<const PlantPlugin> maker = configuredPlant(arguments);
-  const std::unique_ptr<Plant> plant = makePlant(*maker);
-  if (arguments.describe) {
-    std::cout << describe(plant->info(), maker->renderer());
-    return;
-  }
-  setStart(arguments, plant.get());
-  setTarget(arguments, plant.get());
+/// Simulates the torques of standard input, and returns the trajectory as CSV.
+std::string simulated(const Arguments& arguments, Plant* plant) {
+  setStart(arguments, plant);
+  setTarget(arguments, plant);
   const std::vector<Eigen::VectorXd> torques =
       readNumbers(std::cin, plant->info().torque_names, "a torque");
   if (!arguments.frames.empty()) fs::create_directories(arguments.frames);
@@ -202,7 +197,15 @@ void simulate(const Arguments& arguments) {
     trajectory += csvRow(*plant, row, reward);
     if (!arguments.frames.empty()) writeFrame(*plant, arguments.frames, row);
   }
-  std::cout << trajectory << std::flush;
+  return trajectory;
+}
+
+void simulate(const Arguments& arguments) {
+  const std::shared_ptr<const PlantPlugin> maker = configuredPlant(arguments);
+  const std::unique_ptr<Plant> plant = makePlant(*maker);
+  std::cout << (arguments.describe ? describe(plant->info(), maker->renderer())
+                                   : simulated(arguments, plant.get()))
+            << std::flush;
   if (!std::cout) throw std::runtime_error("standard output cannot be written");
 }
 

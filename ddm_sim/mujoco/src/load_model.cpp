@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <boost/algorithm/string/predicate.hpp>
 #include <cerrno>
 #include <cmath>
 #include <csignal>
@@ -47,11 +48,12 @@ std::size_t sizeOfStl(const std::string& bytes) {
   return kStlHeader + kStlTriangle * std::size_t{triangles};
 }
 
-/// Whether an STL file is in ASCII format, which MuJoCo cannot read. Some binary files begin with
-/// "solid" like ASCII files; the size of the file then decides.
+/// Whether an STL file is in ASCII format, which MuJoCo cannot read: "solid" and "facet" in small or
+/// capital letters. Some binary files begin with "solid" too; the size of the file then decides.
 bool isAsciiStl(const std::string& bytes) {
-  if (bytes.rfind("solid", 0) != 0 || bytes.find("facet") == std::string::npos) return false;
-  return bytes.size() != sizeOfStl(bytes);
+  const std::size_t begin = std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size());
+  return boost::istarts_with(bytes.c_str() + begin, "solid") && boost::icontains(bytes, "facet") &&
+         bytes.size() != sizeOfStl(bytes);
 }
 
 std::string binaryStl(const std::string& ascii) {
@@ -60,7 +62,7 @@ std::string binaryStl(const std::string& ascii) {
   std::vector<float> corners;
   std::string word;
   while (in >> word) {
-    if (word != "vertex") continue;
+    if (!boost::iequals(word, "vertex")) continue;
     float x = 0, y = 0, z = 0;
     if (!(in >> x >> y >> z)) break;
     corners.insert(corners.end(), {x, y, z});

@@ -47,20 +47,53 @@ VectorXd Mechanism::draw(std::mt19937_64* engine) const {
   return coupled(position);
 }
 
-VectorXd Mechanism::coupled(VectorXd position) const {
+bool Mechanism::follows(int joint) const {
   const mjModel& m = model_->get();
   for (int i = 0; i < m.neq; ++i) {
+    if (m.eq_type[i] == mjEQ_JOINT && m.eq_active[i] && m.eq_obj1id[i] == joint) return true;
+  }
+  return false;
+}
+
+VectorXd Mechanism::withFollowers(VectorXd position) const {
+  const mjModel& m = model_->get();
+  // Once for each coupling, because a leader may follow a joint whose coupling comes later.
+  for (int k = 0; k < m.neq * m.neq; ++k) {
+    const int i = k % m.neq;
     if (m.eq_type[i] != mjEQ_JOINT || !m.eq_active[i]) continue;
     const int follower = m.eq_obj1id[i], leader = m.eq_obj2id[i];
     const mjtNum* const c = m.eq_data + mjNEQDATA * i;
     const double x = leader < 0 ? 0.0 : position[leader] - m.qpos0[leader];
     position[follower] = m.qpos0[follower] + c[0] + x * (c[1] + x * (c[2] + x * (c[3] + x * c[4])));
   }
+  return position;
+}
+
+VectorXd Mechanism::coupled(VectorXd position) const {
+  position = withFollowers(position);
   for (Eigen::Index i = 0; i < position.size(); ++i) {
     const ModelJoint& joint = joints_[static_cast<std::size_t>(i)];
-    if (joint.limited) position[i] = std::clamp(position[i], joint.lower, joint.upper);
+    if (joint.turnsFreely()) continue;
+    position[i] = std::clamp(position[i], joint.shown_lower, joint.shown_upper);
   }
   return position;
+}
+
+VectorXd Mechanism::atLimits(VectorXd position) const {
+  for (Eigen::Index i = 0; i < position.size(); ++i) {
+    const ModelJoint& joint = joints_[static_cast<std::size_t>(i)];
+    if (!joint.limited) continue;
+    const bool low = position[i] - joint.shown_lower < joint.shown_upper - position[i];
+    position[i] = low ? joint.shown_lower : joint.shown_upper;
+  }
+  return coupled(position);
+}
+
+bool Mechanism::overlaps(const VectorXd& position) const {
+  constexpr double kTouching = 1e-3;  // contacts at rest are this deep [m]
+  const mjData& placed = place(position);
+  return std::any_of(placed.contact, placed.contact + placed.ncon,
+                     [](const mjContact& contact) { return contact.dist < -kTouching; });
 }
 
 const mjData& Mechanism::place(const VectorXd& position) const {
@@ -90,9 +123,17 @@ double Mechanism::energy(const VectorXd& position, bool springs) const {
   return energy;
 }
 
-double Mechanism::inertia(int joint, const VectorXd& position) const {
+VectorXd Mechanism::motion(int joint, const VectorXd& position) const {
+  constexpr double kStep = 1e-6;
+  const VectorXd moved = position + kStep * VectorXd::Unit(position.size(), joint);
+  return (withFollowers(moved) - withFollowers(position)) / kStep;
+}
+
+double Mechanism::inertia(const VectorXd& rates, const VectorXd& position) const {
   place(position);
-  return data_->qM[model_->get().dof_Madr[joint]];
+  VectorXd momentum(rates.size());
+  mj_mulM(&model_->get(), data_.get(), momentum.data(), rates.data());
+  return rates.dot(momentum);
 }
 
 VectorXd Mechanism::highest(const std::vector<VectorXd>& poses) const {
@@ -110,7 +151,7 @@ VectorXd Mechanism::followed(VectorXd position, double sign) const {
   for (int i = 0; i < 1000 && step > 1e-6; ++i) {
     VectorXd change = sign * load(position, springs);
     for (Eigen::Index k = 0; k < change.size(); ++k) {
-      change[k] /= std::max(1e-12, inertia(static_cast<int>(k), position));
+      change[k] /= std::max(1e-12, inertia(VectorXd::Unit(change.size(), k), position));
     }
     const double largest = change.lpNorm<Eigen::Infinity>();
     if (largest < 1e-9) break;

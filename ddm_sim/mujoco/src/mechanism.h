@@ -25,14 +25,24 @@ class Mechanism {
   /// Scale for motions of a joint: 1 rad for a hinge, half the size of the robot [m] for a slide.
   double unit(int joint) const { return joints_[joint].isHinge() ? 1.0 : 0.5 * size_; }
 
-  /// Pose qpos0 of the file, moved into the limits.
+  /// Pose qpos0 of the file, as coupled().
   Eigen::VectorXd zero() const;
 
   /// Draws a random pose from the range that the camera should show.
   Eigen::VectorXd draw(std::mt19937_64* engine) const;
 
-  /// Moves a position into the limits, and sets the joints that follow other joints.
+  /// Whether the position of a joint is a function of another joint, as with <mimic>.
+  bool follows(int joint) const;
+
+  /// Sets the joints that follow other joints, and moves a position into the limits; a slide stays
+  /// in the part that the camera shows.
   Eigen::VectorXd coupled(Eigen::VectorXd position) const;
+
+  /// The position with each limited joint at the nearer end of its shown range, as coupled().
+  Eigen::VectorXd atLimits(Eigen::VectorXd position) const;
+
+  /// Whether shapes of the robot and its surroundings overlap, if the model has contacts.
+  bool overlaps(const Eigen::VectorXd& position) const;
 
   /// The model at rest in this pose.
   const mjData& place(const Eigen::VectorXd& position) const;
@@ -43,8 +53,11 @@ class Mechanism {
   /// Potential energy of weight and springs [J].
   double energy(const Eigen::VectorXd& position, bool springs = true) const;
 
-  /// Inertia that a motor at this joint accelerates [kg m^2 or kg].
-  double inertia(int joint, const Eigen::VectorXd& position) const;
+  /// Rates of all joints for a rate of 1 of this joint, which other joints may follow  [n x 1].
+  Eigen::VectorXd motion(int joint, const Eigen::VectorXd& position) const;
+
+  /// Inertia against these rates of all joints, such as motion() [kg m^2 or kg].
+  double inertia(const Eigen::VectorXd& rates, const Eigen::VectorXd& position) const;
 
   /// Position to which weight and springs move the mechanism slowly.
   Eigen::VectorXd settled(const Eigen::VectorXd& position) const {
@@ -55,6 +68,7 @@ class Mechanism {
   Eigen::VectorXd highest(const std::vector<Eigen::VectorXd>& poses) const;
 
  private:
+  Eigen::VectorXd withFollowers(Eigen::VectorXd position) const;
   Eigen::VectorXd followed(Eigen::VectorXd position, double sign) const;
   void showSlidesInPart();
 

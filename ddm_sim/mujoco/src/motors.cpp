@@ -25,6 +25,12 @@ struct Range {
     const double limit = std::min(-low, high);
     return limit > 0.0 && std::isfinite(limit) ? std::make_optional(limit) : std::nullopt;
   }
+
+  /// Why limit() is empty.
+  std::string whyNone() const {
+    if (!(low < high) || !std::isfinite(high - low)) return "has no limit";
+    return textOf("has the one-sided torques [", low, ", ", high, "]");
+  }
 };
 
 /// Torque at the joint for a control of 1 of actuator `i`. The result is 0 if the torque is not
@@ -48,16 +54,16 @@ Range rangeOf(const mjModel& m, int i) {
   return range;
 }
 
-/// Largest torque that all actuators of the file together reach at a joint. Empty if one of them
-/// has no limit.
-std::optional<double> limitOfActuators(const mjModel& m, int joint) {
+/// Torques that all actuators of the file together reach at a joint. Infinite if one of them has no
+/// limit.
+Range rangeOfActuators(const mjModel& m, int joint) {
   Range sum = {0.0, 0.0};
   for (int i = 0; i < m.nu; ++i) {
     if (m.actuator_trntype[i] != mjTRN_JOINT || m.actuator_trnid[2 * i] != joint) continue;
     const Range range = rangeOf(m, i);
     sum = {sum.low + range.low, sum.high + range.high};
   }
-  return sum.limit();
+  return sum;
 }
 
 /// Actuator `i` of the file.
@@ -89,7 +95,11 @@ Motor namedMotor(const MujocoModel& model, const std::string& name) {
                 model.uri(), ", which mimics the joint ", follows->second, ": list that one");
   }
   motor.limit = model.effortLimit(name);
-  if (!motor.limit) motor.limit = limitOfActuators(model.get(), motor.joint);
+  if (motor.limit == 0.0) motor.why_unknown = "has a limit of 0";
+  if (motor.limit) return motor;
+  const Range range = rangeOfActuators(model.get(), motor.joint);
+  motor.limit = range.limit();
+  motor.why_unknown = range.whyNone();
   return motor;
 }
 
@@ -128,13 +138,14 @@ std::vector<double> limitsOf(const MujocoModel& model, const MujocoOptions& opti
     const double allowed = motors[i].limit.value_or(0.0);
     if (given.empty() && allowed == 0.0) {
       refuseModel(
-          "plant/max_torque must be given, because ", model.uri(),
-          (motors[i].limit ? " has a limit of 0" : " has no limit"), " for the motor of the joint ",
-          joint,
-          ": write it there, or give the joint an effort (URDF) or the motor a ctrlrange (MJCF)");
+          "plant/max_torque must be given, because ", model.uri(), " ", motors[i].why_unknown,
+          " for the motor of the joint ", joint,
+          ": write it there, or give the joint an effort (URDF) or the motor a symmetric ctrlrange "
+          "(MJCF)");
     }
     const double limit = given.empty() ? allowed : given[given.size() == 1 ? 0 : i];
-    if (allowed > 0.0 && limit > allowed * (1.0 + 1e-9)) {
+    constexpr double kRounding = 1e-6;  // new_plant writes seven digits
+    if (allowed > 0.0 && limit > allowed * (1.0 + kRounding)) {
       refuseModel("plant/max_torque must be at most what ", model.uri(), " allows, ", allowed,
                   " at the joint ", joint, ", got ", limit);
     }

@@ -16,6 +16,7 @@ struct Motor {
   int joint = 0;  ///< index of the joint that the motor moves
   /// Limit of the motor's torque or force in the file [N m or N]. Empty if the file has no limit.
   std::optional<double> limit;
+  std::string why_unknown = "has no limit";  ///< what the file says if `limit` is empty or 0
 };
 
 /// Motors of the option `motors`, or the actuators of the file in their order.

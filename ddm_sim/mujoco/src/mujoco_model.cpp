@@ -144,6 +144,8 @@ std::string readable(std::string error, const ModelText& text) {
     const fs::path beside = fs::absolute(text.path).parent_path() / mesh.first;
     boost::replace_all(error, beside.string(), mesh.second);
     boost::replace_all(error, mesh.first, mesh.second);
+    boost::replace_all(error, "name = " + fs::path(mesh.first).stem().string() + ",",
+                       "name = " + mesh.second + ",");
   }
   boost::trim(error);
   boost::replace_all(error, "\n", " ");

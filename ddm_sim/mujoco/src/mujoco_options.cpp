@@ -57,8 +57,6 @@ std::vector<std::string> MujocoOptions::problems() const {
   plant.require(image_size * look.supersampling <= kMaxSize, "supersampling",
                 "times image_size be at most " + std::to_string(kMaxSize) + " pixels",
                 image_size * look.supersampling);
-  plant.requireWithin("camera_shift", look.camera_shift, 0.0, 1.0);
-  plant.requireWithin("colour_shift", look.colour_shift, 0.0, 1.0);
   return plant.problems();
 }
 

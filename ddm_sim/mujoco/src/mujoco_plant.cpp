@@ -58,8 +58,7 @@ std::string columnOf(const MujocoModel& model, int joint) {
   refuseModel(
       "the joint \"", name, "\" of ", model.uri(),
       " must have a name of ASCII characters without blanks, commas and double quotes, because it "
-      "heads columns of CSV files: rename it in the file, or give plant/state_names and "
-      "plant/torque_names");
+      "heads columns of CSV files: rename it in the file");
 }
 
 std::vector<std::string> stateNames(const MujocoModel& model, const MujocoOptions& options) {
@@ -107,7 +106,7 @@ PlantInfo infoOf(const MujocoModel& model, const MujocoOptions& options) {
   PlantInfo info;
   for (int i = 0; i < n; ++i) {
     info.joints.push_back(
-        {model.name(mjOBJ_JOINT, i), isHinge(model, i) ? JointKind::kAngle : JointKind::kLength});
+        {columnOf(model, i), isHinge(model, i) ? JointKind::kAngle : JointKind::kLength});
   }
   info.state_names = stateNames(model, options);
   if (info.stateDim() != 2 * n) {

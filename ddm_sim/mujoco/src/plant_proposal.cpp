@@ -13,6 +13,7 @@
 #include "mechanism.h"
 #include "motors.h"
 #include "mujoco_physics.h"
+#include "random_motion.h"
 
 namespace ddm {
 namespace {
@@ -29,9 +30,9 @@ constexpr double kTooStrong = 4.0;  // a file's limit above this many proposed t
 constexpr double kStep = 0.8;
 // Largest speed, so that dt >= 0.02 s, the period of a usual camera [rad/s]
 constexpr double kFastest = 40.0;
-constexpr double kSeconds = 2.0;   // duration of a simulation [s]
-constexpr double kHold = 0.3;      // time for which a random torque is constant [s]
-constexpr double kStartStd = 0.1;  // standard deviation of the initial state [rad]
+constexpr double kStartStd = 0.1;  // largest standard deviation of the initial state [rad]
+// Largest standard deviation of the initial state, as a share of the joint's range
+constexpr double kStartShare = 0.05;
 
 /// Rounds to two significant digits.
 double rounded(double number) { return std::stod(textOf(std::setprecision(2), number)); }
@@ -42,12 +43,6 @@ double roundedPosition(double position, bool angle) {
   const double quarters = std::round(position / (0.5 * kPi));
   if (angle && std::abs(position - 0.5 * kPi * quarters) < 3e-3) return 0.5 * kPi * quarters;
   return std::round(position * 1e3) / 1e3 + 0.0;  // + 0.0 turns -0 into 0
-}
-
-VectorXd atRest(const VectorXd& position) {
-  VectorXd state = VectorXd::Zero(2 * position.size());
-  state.head(position.size()) = position;
-  return state;
 }
 
 std::vector<double> listOf(const VectorXd& values) {
@@ -78,6 +73,7 @@ class Proposer {
   }
 
   PlantProposal propose(const std::vector<double>& max_torque) {
+    requireNoEndlessFall();
     proposeStartAndGoal();
     proposeTorque(max_torque);
     proposeTimeStep(max_torque.empty());
@@ -87,6 +83,22 @@ class Proposer {
   }
 
  private:
+  /// @throws std::invalid_argument naming a slide without limits that carries weight
+  void requireNoEndlessFall() const {
+    for (const VectorXd& position : positions_) {
+      const VectorXd load = mechanism_.load(position, false);
+      for (std::size_t i = 0; i < out_.joints.size(); ++i) {
+        const int joint = static_cast<int>(i);
+        const bool held = out_.joints[i].limited || out_.joints[i].isHinge() ||
+                          mechanism_.follows(joint) || model_->get().jnt_stiffness[i] > 0.0;
+        if (held || std::abs(load[joint]) < 1e-6) continue;
+        refuseModel("the slide ", out_.joints[i].name, " of ", model_->uri(),
+                    " carries weight and has no limits, so that it falls without end: give it a "
+                    "range in the file");
+      }
+    }
+  }
+
   bool gravityMatters() const {
     double least = 1e300, most = -1e300;
     for (const VectorXd& position : positions_) {
@@ -102,30 +114,36 @@ class Proposer {
     // Away from an unstable equilibrium.
     const VectorXd nudged = mechanism_.coupled(zero.array() + 0.02);
     VectorXd rest = mechanism_.settled(nudged);
-    const bool settles = rest != nudged;
+    const bool settles = rest != nudged && !mechanism_.overlaps(rest);
     if (!settles) rest = zero;
     VectorXd start = rest, goal = rest;
     if (gravityMatters()) {
-      std::vector<VectorXd> candidates = positions_;
-      for (VectorXd& one : candidates) {  // a joint without load keeps its rest position
+      std::vector<VectorXd> candidates = {rest};
+      for (VectorXd one : positions_) {  // a joint without load keeps its rest position
         const VectorXd load = mechanism_.load(one, false);
         for (Eigen::Index i = 0; i < one.size(); ++i) {
           if (std::abs(load[i]) < 1e-9) one[i] = rest[i];
         }
+        if (!mechanism_.overlaps(one)) candidates.push_back(one);
       }
       goal = mechanism_.highest(candidates);
+      if (mechanism_.overlaps(goal)) goal = rest;
     }
     std::vector<double>& start_std = out_.options.start_std;
     start_std.clear();
     for (std::size_t i = 0; i < out_.joints.size(); ++i) {
-      start_std.push_back(rounded(kStartStd * mechanism_.unit(static_cast<int>(i))));
+      const int joint = static_cast<int>(i);
+      const double narrow = kStartShare * (out_.joints[i].upper - out_.joints[i].lower);
+      const double largest = std::min(kStartStd * mechanism_.unit(joint), narrow);
+      start_std.push_back(mechanism_.follows(joint) ? 0.0 : rounded(largest));
     }
     for (Eigen::Index i = 0; i < start.size(); ++i) {
       const ModelJoint& joint = out_.joints[static_cast<std::size_t>(i)];
-      const double inside =
-          std::min(2.0 * start_std[static_cast<std::size_t>(i)], 0.1 * (joint.upper - joint.lower));
+      const double inside = 2.0 * start_std[static_cast<std::size_t>(i)];
       for (double* value : {&start[i], &goal[i]}) {
-        if (joint.limited) *value = std::clamp(*value, joint.lower + inside, joint.upper - inside);
+        if (!joint.turnsFreely()) {
+          *value = std::clamp(*value, joint.shown_lower + inside, joint.shown_upper - inside);
+        }
         *value = roundedPosition(*value, joint.isHinge());
       }
     }
@@ -161,16 +179,26 @@ class Proposer {
     return mechanism_.coupled(position);
   }
 
+  /// Torque that lifts the weight with a margin [N m or N].
+  double liftingTorque(const Motor& motor) const {
+    double load = 0.0;
+    for (const VectorXd& position : positions_) {
+      const VectorXd motion = mechanism_.motion(motor.joint, position);
+      load = std::max(load, std::abs(motion.dot(mechanism_.load(position))));
+    }
+    return 1.5 * load;
+  }
+
   /// Torque that lifts the weight and accelerates the joint [N m or N].
   double neededTorque(const Motor& motor) const {
     const mjModel& m = model_->get();
-    double load = 0.0, inertia = 0.0;
+    double inertia = 0.0;
     for (const VectorXd& position : positions_) {
-      load = std::max(load, std::abs(mechanism_.load(position)[motor.joint]));
-      inertia = std::max(inertia, mechanism_.inertia(motor.joint, position));
+      const VectorXd motion = mechanism_.motion(motor.joint, position);
+      inertia = std::max(inertia, mechanism_.inertia(motion, position));
     }
     const double unit = mechanism_.unit(motor.joint);
-    return 1.5 * load + kAcceleration * unit * inertia + m.dof_frictionloss[motor.joint] +
+    return liftingTorque(motor) + kAcceleration * unit * inertia + m.dof_frictionloss[motor.joint] +
            2.0 * unit * m.dof_damping[motor.joint];
   }
 
@@ -197,68 +225,53 @@ class Proposer {
       reasons.push_back(joint + ": estimated from weight and inertia, because the file " +
                         (allowed > 0.0 ? textOf("allows ", std::setprecision(3), allowed,
                                                 ", far more than the joint needs")
-                                       : "has no limit"));
-      if (allowed == 0.0 && out_.to_set.back() != "max_torque") out_.to_set.push_back("max_torque");
+                                       : motor.why_unknown));
+      if (allowed == 0.0) askForTorque();
     }
     out_.reasons["max_torque"] = join(reasons, "; ");
   }
 
-  /// Speed of the fastest joint in each physics step, in units of the joints per second, sorted.
-  std::vector<double> speeds() const {
-    const MujocoPhysics physics(model_, out_.options);
-    const int n = physics.numJoints();
-    const double timestep = timestepOf(*model_, out_.options);
-    const int hold = std::max(1, static_cast<int>(std::round(kHold / timestep)));
-    std::vector<double> speeds;
-    std::mt19937_64 engine(2);
-    for (int run = 0; run < 8; ++run) {
-      VectorXd state = atRest(Eigen::Map<const VectorXd>(
-          (run % 2 == 0 ? out_.options.start : out_.options.goal).data(), n));
-      for (double time = 0.0; time < kSeconds; time += hold * timestep) {
-        VectorXd torque(static_cast<Eigen::Index>(motors_.size()));
-        for (Eigen::Index i = 0; i < torque.size(); ++i) {
-          const double limit = out_.options.max_torque[static_cast<std::size_t>(i)];
-          torque[i] = std::uniform_real_distribution<double>(-limit, limit)(engine);
-        }
-        const Eigen::MatrixXd states = physics.frames(state, torque, hold);
-        for (Eigen::Index k = 0; k < states.cols(); ++k) {
-          double fastest = 0.0;
-          for (int i = 0; i < n; ++i) {
-            fastest = std::max(fastest, std::abs(states(n + i, k)) / mechanism_.unit(i));
-          }
-          speeds.push_back(fastest);
-        }
-        state = states.rightCols(1);
-      }
-    }
-    std::sort(speeds.begin(), speeds.end());
-    return speeds;
+  void askForTorque() {
+    if (out_.to_set.back() != "max_torque") out_.to_set.push_back("max_torque");
   }
 
-  /// Result of speeds(). Reduces the time step of the physics if the simulation is unstable.
-  std::vector<double> stableSpeeds() {
+  /// Speed under random torques of up to this share of max_torque. Reduces the time step of the
+  /// physics if the simulation is unstable.
+  double stableSpeed(double share) {
     constexpr int kHalvings = 4;
+    const auto speed = [&] {
+      return speedUnderRandomTorques(model_, mechanism_, out_.options, motors_.size(), share);
+    };
     for (int i = 0; i < kHalvings; ++i) {
       try {
-        return speeds();
+        return speed();
       } catch (const std::range_error&) {
         out_.options.timestep = 0.5 * timestepOf(*model_, out_.options);
         out_.reasons["timestep"] = "with that of the file the simulation is unstable";
       }
     }
-    return speeds();
+    return speed();
   }
 
   /// @param free_torque  true: the torque may be lowered if it makes the joints too fast
   void proposeTimeStep(bool free_torque) {
-    double fast = 0.0;
-    for (int i = 0; i < 8; ++i) {
-      const std::vector<double> all = stableSpeeds();
-      fast = all[all.size() * 95 / 100];
-      if (fast <= kFastest || !free_torque) break;
-      for (double& limit : out_.options.max_torque) limit = rounded(0.5 * limit);
+    std::vector<double>& limits = out_.options.max_torque;
+    const std::vector<double> first = limits;
+    constexpr double kTip = 0.01;  // tips the robot out of its equilibrium
+    const double fall = stableSpeed(kTip);
+    double fast = stableSpeed(1.0);
+    for (int i = 0; free_torque && i < 8 && fast > std::max(kFastest, 1.2 * fall); ++i) {
+      for (std::size_t k = 0; k < limits.size(); ++k) {
+        const double least = std::min(limits[k], rounded(liftingTorque(motors_[k])));
+        limits[k] = std::max(least, rounded(0.5 * limits[k]));
+      }
+      fast = stableSpeed(1.0);
+    }
+    if (limits != first) {
+      askForTorque();
       out_.reasons["max_torque"] +=
-          i > 0 ? "" : "; lowered, because random torques made it too fast";
+          textOf("; lowered, because random torques made a joint faster than ", kFastest,
+                 " rad/s (slides: half sizes of the robot per s), faster than a fall");
     }
     const double timestep = timestepOf(*model_, out_.options);
     double dt = 0.02;
@@ -281,7 +294,15 @@ class Proposer {
       shortest = std::min(shortest, joint.shown_upper - joint.shown_lower);
     }
     const bool has_hinges = slides.size() < out_.joints.size();
-    out_.options.tolerance = has_hinges ? 10.0 : rounded(0.05 * shortest);
+    double tolerance = 10.0;
+    for (const Motor& motor : motors_) {  // a narrow hinge must not be within it at the start
+      const auto i = static_cast<std::size_t>(motor.joint);
+      const ModelJoint& joint = out_.joints[i];
+      const double way = std::abs(out_.options.goal[i] - out_.options.start[i]);
+      const bool moves = joint.isHinge() && way > 0.1 * (joint.upper - joint.lower);
+      if (moves) tolerance = std::min(tolerance, rounded(0.25 * way * 180.0 / kPi));
+    }
+    out_.options.tolerance = has_hinges ? tolerance : rounded(0.05 * shortest);
     if (has_hinges && !slides.empty()) {
       out_.reasons["tolerance"] = "the positions of " + join(slides, ", ") +
                                   " do not count; to measure sites or links, add error_sites";
@@ -293,16 +314,7 @@ class Proposer {
   /// their nearer limit, because no pose within the limits reaches farther.
   std::vector<VectorXd> withLimits() const {
     std::vector<VectorXd> poses = positions_;
-    for (VectorXd position : positions_) {
-      for (std::size_t i = 0; i < out_.joints.size(); ++i) {
-        const ModelJoint& joint = out_.joints[i];
-        if (!joint.limited) continue;
-        double& value = position[static_cast<Eigen::Index>(i)];
-        const bool low = value - joint.shown_lower < joint.shown_upper - value;
-        value = low ? joint.shown_lower : joint.shown_upper;
-      }
-      poses.push_back(mechanism_.coupled(position));
-    }
+    for (const VectorXd& position : positions_) poses.push_back(mechanism_.atLimits(position));
     for (const std::vector<double>* pose : {&out_.options.start, &out_.options.goal}) {
       poses.push_back(Eigen::Map<const VectorXd>(pose->data(), positions_[0].size()));
     }

@@ -2,13 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_mujoco/renderer.h"
 
-#include <ddm_common/random_stream.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <random>
 #include <set>
 #include <utility>
 
@@ -21,17 +18,9 @@ namespace {
 constexpr double kDegree = kPi / 180.0;
 constexpr int kMaxDecor = 1000;  // drawn objects that are not geoms: sites, tendons, joints
 constexpr int kNoCamera = -1;
-constexpr int kNumShown = 3;      // MuJoCo draws the groups of geoms below this number
-constexpr double kNearest = 0.5;  // relative change of the camera's distance at a share of 1 [-]
+constexpr int kNumShown = 3;  // MuJoCo draws the groups of geoms below this number
 // Value by which MuJoCo marks a geom that has the colour of its material.
 constexpr std::array<float, 4> kUnset = {0.5F, 0.5F, 0.5F, 1.0F};
-
-/// Copies an array into `owner` and returns the copy's address.
-template <class Value>
-Value* copied(const Value* values, int count, std::vector<Value>* owner) {
-  owner->assign(values, values + count);
-  return owner->data();
-}
 
 bool hasColourOfMaterial(const mjModel& model, int geom) {
   return model.geom_matid[geom] >= 0 &&
@@ -114,110 +103,6 @@ void requireNoError(const char* what) {
 
 }  // namespace
 
-/// Each disturbance has its own random stream, so that one disturbance does not change another.
-enum Part : std::uint32_t { kCameraPart, kColourPart };
-
-/// Random numbers, uniform in [-share, share].
-class Shift {
- public:
-  Shift(Part part, double share)
-      : rng_(randomStream({0, part, false}, StreamRole::kScene)), uniform_(-share, share) {}
-
-  double operator()() { return uniform_(rng_); }
-
-  /// Adds random numbers to the red, green and blue of `count` objects. Opacity stays unchanged.
-  void shiftColours(int count, float* rgba) {
-    for (int i = 0; i < count; ++i) {
-      for (int channel = 0; channel < 3; ++channel) {
-        float& value = rgba[4 * i + channel];
-        value = std::clamp(value + static_cast<float>(uniform_(rng_)), 0.0F, 1.0F);
-      }
-    }
-  }
-
- private:
-  std::mt19937_64 rng_;
-  std::uniform_real_distribution<double> uniform_;
-};
-
-/// A copy of a model's appearance with disturbances of colours and camera. The original model,
-/// which the physics uses, stays unchanged.
-class Scene {
- public:
-  Scene(std::shared_ptr<const MujocoModel> model, const RenderOptions& options)
-      : model_(std::move(model)), appearance_(model_->get()), turn_(Eigen::Matrix3f::Identity()) {
-    if (options.camera_shift > 0.0) drawCamera(options.camera_shift);
-    if (options.colour_shift > 0.0) drawColours(options.colour_shift);
-  }
-  Scene(const Scene&) = delete;  // appearance() points into this object
-  Scene& operator=(const Scene&) = delete;
-
-  /// The model with changed colours, to be used for drawing only. This object owns it.
-  mjModel& appearance() { return appearance_; }
-
-  /// Moves the camera of a drawn scene around the point that it looks at.
-  void moveCamera(mjvGLCamera* camera) const {
-    using Vector = Eigen::Map<Eigen::Vector3f>;
-    Vector position(camera->pos), forward(camera->forward), up(camera->up);
-    Eigen::Matrix3f axes;  // axes of the camera in the world: right, up, backwards
-    axes << forward.cross(up), up, -forward;
-    const Eigen::Vector3f middle =
-        Eigen::Map<const Eigen::Vector3d>(appearance_.stat.center).cast<float>();
-    const float distance = std::max((middle - position).dot(forward), camera->frustum_near);
-    const Eigen::Vector3f target = position + distance * forward;
-    const Eigen::Matrix3f turned = axes * turn_;
-    up = turned.col(1);
-    forward = -turned.col(2);
-    position = target - nearer_ * distance * forward;
-  }
-
- private:
-  void drawCamera(double share) {
-    Shift shift(kCameraPart, share);
-    const auto turn = [&shift](const Eigen::Vector3f& axis) {
-      return Eigen::AngleAxisf(static_cast<float>(0.5 * kPi * shift()), axis);
-    };
-    turn_ = turn(Eigen::Vector3f::UnitY());
-    turn_ = turn_ * turn(Eigen::Vector3f::UnitX());
-    turn_ = turn_ * turn(Eigen::Vector3f::UnitZ());
-    nearer_ = static_cast<float>(1.0 + kNearest * shift());
-  }
-
-  void drawColours(double share) {
-    Shift shift(kColourPart, share);
-    const mjModel& m = model_->get();
-    appearance_.geom_rgba = copied(m.geom_rgba, 4 * m.ngeom, &geom_rgba_);
-    appearance_.site_rgba = copied(m.site_rgba, 4 * m.nsite, &site_rgba_);
-    appearance_.mat_rgba = copied(m.mat_rgba, 4 * m.nmat, &mat_rgba_);
-    appearance_.tex_rgb = copied(m.tex_rgb, m.ntexdata, &tex_rgb_);
-    shift.shiftColours(m.ngeom, appearance_.geom_rgba);
-    // A geom whose colour differs from kUnset no longer shows its material. Such geoms keep kUnset.
-    for (int i = 0; i < m.ngeom; ++i) {
-      if (hasColourOfMaterial(m, i)) {
-        std::copy(kUnset.begin(), kUnset.end(), appearance_.geom_rgba + 4 * i);
-      }
-    }
-    shift.shiftColours(m.nsite, appearance_.site_rgba);
-    shift.shiftColours(m.nmat, appearance_.mat_rgba);
-    for (int i = 0; i < m.ntex; ++i) {
-      const std::array<double, 3> change = {shift(), shift(), shift()};
-      mjtByte* const texel = appearance_.tex_rgb + m.tex_adr[i];
-      for (int k = 0; k < 3 * m.tex_width[i] * m.tex_height[i]; ++k) {
-        const double value = texel[k] + 255.0 * change[static_cast<std::size_t>(k % 3)];
-        texel[k] = static_cast<mjtByte>(std::clamp(value, 0.0, 255.0) + 0.5);
-      }
-    }
-  }
-
-  std::shared_ptr<const MujocoModel> model_;
-  mjModel appearance_;  ///< uses the arrays of model_ except for the following colours
-  std::vector<float> geom_rgba_, site_rgba_, mat_rgba_;
-  std::vector<mjtByte> tex_rgb_;
-  Eigen::Matrix3f turn_;  ///< rotation of the camera, in its own frame
-  /// New distance to the point that the camera looks at, divided by the old one.
-  float nearer_ = 1.0F;
-};
-
 bool isDrawnAndMoves(const mjModel& model, int geom) {
   const int group = model.geom_group[geom];
   return couldBeSeen(model, geom) && (group < kNumShown || group == groupToShow(model));
@@ -238,14 +123,13 @@ RenderedImage greyOf(const RenderedImage& rendered) {
 }
 
 Renderer::Renderer(const std::shared_ptr<const MujocoModel>& model, const RenderOptions& options)
-    : options_(options), scene_(std::make_unique<Scene>(model, options)) {
-  mjModel& look = scene_->appearance();
-  look.vis.global.offwidth = options_.width * options_.supersampling;
-  look.vis.global.offheight = options_.height * options_.supersampling;
-  look.vis.quality.offsamples = options_.for_people ? 4 : 0;
+    : options_(options), model_(model), look_(model->get()) {
+  look_.vis.global.offwidth = options_.width * options_.supersampling;
+  look_.vis.global.offheight = options_.height * options_.supersampling;
+  look_.vis.quality.offsamples = options_.for_people ? 4 : 0;
   const int index = findCamera(*model, options_);
   if (index == kNoCamera) {
-    look.vis.global.fovy = static_cast<float>(RenderOptions::kFieldOfView);
+    look_.vis.global.fovy = static_cast<float>(RenderOptions::kFieldOfView);
     camera_ = placed(options_.position, options_.look_at);
   } else {
     mjv_defaultCamera(&camera_);
@@ -257,10 +141,10 @@ Renderer::Renderer(const std::shared_ptr<const MujocoModel>& model, const Render
     shown_.geomgroup[RenderOptions::kPeopleGroup] = 1;
     shown_.sitegroup[RenderOptions::kPeopleGroup] = 1;
   }
-  const int group = groupToShow(look);
+  const int group = groupToShow(look_);
   if (group >= 0) shown_.geomgroup[group] = 1;
   mjv_defaultScene(&drawn_);
-  mjv_makeScene(&look, &drawn_, look.ngeom + kMaxDecor);
+  mjv_makeScene(&look_, &drawn_, look_.ngeom + kMaxDecor);
   drawn_.flags[mjRND_SHADOW] = drawn_.flags[mjRND_REFLECTION] = 1;
   mjr_defaultContext(&gpu_);
 }
@@ -296,19 +180,18 @@ RenderedImage Renderer::draw(const mjData& data) {
 CameraModel Renderer::camera(const mjData& data) {
   const std::lock_guard<std::mutex> lock(mutex_);
   updateScene(data);
-  const mjModel& look = scene_->appearance();
   const mjvGLCamera camera = mjv_averageCamera(&drawn_.camera[0], &drawn_.camera[1]);
   const Eigen::Vector3f forward = Eigen::Map<const Eigen::Vector3f>(camera.forward);
   const Eigen::Vector3f down = -Eigen::Map<const Eigen::Vector3f>(camera.up);
   const int index = camera_.fixedcamid;
-  const char* const name = index < 0 ? nullptr : mj_id2name(&look, mjOBJ_CAMERA, index);
+  const char* const name = index < 0 ? nullptr : mj_id2name(&look_, mjOBJ_CAMERA, index);
   CameraModel out;
   out.name = name == nullptr ? "camera" : name;
   out.width = options_.width;
   out.height = options_.height;
-  out.fovy = kDegree * (index < 0 ? RenderOptions::kFieldOfView : look.cam_fovy[index]);
-  out.fixed = index < 0 || (look.cam_mode[index] == mjCAMLIGHT_FIXED &&
-                            look.body_weldid[look.cam_bodyid[index]] == 0);
+  out.fovy = kDegree * (index < 0 ? RenderOptions::kFieldOfView : look_.cam_fovy[index]);
+  out.fixed = index < 0 || (look_.cam_mode[index] == mjCAMLIGHT_FIXED &&
+                            look_.body_weldid[look_.cam_bodyid[index]] == 0);
   out.position = Eigen::Map<const Eigen::Vector3f>(camera.pos).cast<double>();
   out.rotation << down.cross(forward).cast<double>(), down.cast<double>(), forward.cast<double>();
   return out;
@@ -316,10 +199,8 @@ CameraModel Renderer::camera(const mjData& data) {
 
 void Renderer::updateScene(const mjData& data) {
   // mjv_updateScene() only reads data, although its parameter is not const.
-  mjv_updateScene(&scene_->appearance(), const_cast<mjData*>(&data), &shown_, nullptr, &camera_,
-                  mjCAT_ALL, &drawn_);
-  scene_->moveCamera(&drawn_.camera[0]);
-  scene_->moveCamera(&drawn_.camera[1]);
+  mjv_updateScene(&look_, const_cast<mjData*>(&data), &shown_, nullptr, &camera_, mjCAT_ALL,
+                  &drawn_);
 }
 
 void Renderer::openContext() {
@@ -327,16 +208,15 @@ void Renderer::openContext() {
   const EglContext::Current current(*context);
   static std::mutex loading;  // MuJoCo stores the addresses of OpenGL functions in global variables
   const std::lock_guard<std::mutex> lock(loading);
-  const mjModel& look = scene_->appearance();
   mjr_defaultContext(&gpu_);
   try {
-    mjr_makeContext(&look, &gpu_, mjFONTSCALE_50);
+    mjr_makeContext(&look_, &gpu_, mjFONTSCALE_50);
   } catch (const std::runtime_error& e) {
     throw std::runtime_error(textOf(
-        "OpenGL cannot draw images of ", look.vis.global.offwidth, " x ", look.vis.global.offheight,
-        " pixels, supersampling included, with ", look.vis.quality.offsamples,
-        " samples and a shadow map of ", look.vis.quality.shadowsize, ": ", e.what(),
-        "; free some memory, or make them smaller"));
+        "OpenGL cannot draw images of ", look_.vis.global.offwidth, " x ",
+        look_.vis.global.offheight, " pixels, supersampling included, with ",
+        look_.vis.quality.offsamples, " samples and a shadow map of ", look_.vis.quality.shadowsize,
+        ": ", e.what(), "; free some memory, or make them smaller"));
   }
   mjr_setBuffer(mjFB_OFFSCREEN, &gpu_);
   if (gpu_.currentBuffer != mjFB_OFFSCREEN) {

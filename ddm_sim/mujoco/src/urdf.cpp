@@ -5,8 +5,11 @@
 #include <boost/algorithm/string/case_conv.hpp>
 #include <boost/algorithm/string/join.hpp>
 #include <filesystem>
+#include <iomanip>
 #include <iterator>
+#include <locale>
 #include <set>
+#include <sstream>
 #include <stdexcept>
 
 #include "model_files.h"
@@ -91,11 +94,14 @@ class MeshNames {
   std::set<std::string> unreadable_;
 };
 
-/// Overrides three defaults of MuJoCo: MuJoCo drops visual shapes, computes the mass of a link
-/// without <inertial> from its shapes, and refuses inertias that rounding has made impossible.
-void completeCompiler(XMLElement* compiler) {
-  const std::pair<const char*, const char*> ours[] = {
-      {"discardvisual", "false"}, {"inertiafromgeom", "false"}, {"balanceinertia", "true"}};
+/// Overrides four defaults of MuJoCo: MuJoCo drops visual shapes, computes the mass of a link
+/// without <inertial> from its shapes, refuses inertias that rounding has made impossible, and
+/// refuses meshes without a convex hull (flat ones), although only contacts need the hull.
+void completeCompiler(bool contacts, XMLElement* compiler) {
+  const std::pair<const char*, const char*> ours[] = {{"discardvisual", "false"},
+                                                      {"inertiafromgeom", "false"},
+                                                      {"balanceinertia", "true"},
+                                                      {"convexhull", contacts ? "true" : "false"}};
   for (const auto& one : ours) {
     if (compiler->Attribute(one.first) == nullptr) compiler->SetAttribute(one.first, one.second);
   }
@@ -170,7 +176,12 @@ void makePossible(XMLElement* link) {
   principal[0] = least + 1e-6 * principal[2];  // the margin covers later rounding
   inertia = solver.eigenvectors() * principal.asDiagonal() * solver.eigenvectors().transpose();
   for (int i = 0; i < 3; ++i) {
-    for (int j = i; j < 3; ++j) element->SetAttribute(kNames[i][j], inertia(i, j));
+    for (int j = i; j < 3; ++j) {
+      std::ostringstream number;  // tinyxml2 writes numbers with the decimal comma of the locale
+      number.imbue(std::locale::classic());
+      number << std::setprecision(17) << inertia(i, j);
+      element->SetAttribute(kNames[i][j], number.str().c_str());
+    }
   }
 }
 
@@ -190,7 +201,8 @@ void readJoint(const XMLElement& joint, const std::vector<XMLElement*>& joints, 
   urdf->facts.leaders[name] = urdf->couplings.back().leader;
 }
 
-/// Checks masses and inertias, unless a setting in the <mujoco> block lets MuJoCo replace them.
+/// Checks masses and inertias of the links that a joint moves, unless a setting in the <mujoco>
+/// block lets MuJoCo replace them. The inertia of the root link has no effect.
 void completeInertias(const std::vector<XMLElement*>& links, const std::vector<XMLElement*>& joints,
                       const std::map<std::string, std::string>& fixed, const XMLElement& compiler) {
   if (compiler.Attribute("boundinertia") != nullptr ||
@@ -201,11 +213,9 @@ void completeInertias(const std::vector<XMLElement*>& links, const std::vector<X
   for (XMLElement* link : links) by_name[attribute(*link, "name")] = link;
   for (const XMLElement* joint : joints) {
     if (attribute(*joint, "type") == "fixed") continue;
-    requireInertia(linkOf(*joint, "child"), by_name, fixed);
-  }
-  if (attribute(compiler, "balanceinertia") == "true") return;
-  for (XMLElement* link : links) {
-    if (fixed.count(attribute(*link, "name")) == 0) makePossible(link);
+    const std::string moved = linkOf(*joint, "child");
+    requireInertia(moved, by_name, fixed);
+    if (attribute(compiler, "balanceinertia") != "true") makePossible(by_name.at(moved));
   }
 }
 
@@ -251,7 +261,7 @@ Urdf readUrdf(const std::string& text, const std::string& path, const FindPackag
     }
   }
   meshes.requireReadable();
-  completeCompiler(compiler);
+  completeCompiler(urdf.contacts, compiler);
   urdf.model = {path, xmlText(*document), meshes.files};
   return urdf;
 }

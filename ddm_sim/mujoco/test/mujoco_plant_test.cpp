@@ -176,11 +176,10 @@ TEST(MujocoPlant, RefusesNamesOfJointsThatHeadNoColumn) {
       text.replace(text.find(old), old.size(), attribute + ("\"" + std::string(name) + "\""));
     }
     MujocoOptions options = armOptions();
+    options.state_names = {"a", "b", "c", "d"};  // do not name the joint
+    options.torque_names = {"e", "f"};
     EXPECT_TRUE(testing::names(refusalOf([&] { plantOf(text, options); }),
                                {"the joint \"" + std::string(name), "model.xml", "rename it"}));
-    options.state_names = {"a", "b", "c", "d"};
-    options.torque_names = {"e", "f"};
-    EXPECT_EQ(refusalOf([&] { plantOf(text, options); }), "");
   }
 }
 

@@ -13,6 +13,7 @@
 #include "ddm_msgs/testing/expect_error.h"
 #include "ddm_mujoco/mujoco_plant.h"
 #include "ddm_sim/angles.h"
+#include "load_model.h"
 #include "model_folder.h"
 
 namespace ddm {
@@ -139,6 +140,105 @@ TEST_F(Proposal, ATorqueIsEstimatedFromTheWeightWhereTheFileHasNoLimitOrAHugeOne
   }
   EXPECT_EQ(propose(pendulum("<limit effort='5' velocity='1'/>")).options.max_torque,
             std::vector<double>({5.0}));
+}
+
+TEST_F(Proposal, ATorqueRangeInOneDirectionIsQuoted) {
+  const PlantProposal proposal = propose(
+      "<mujoco><worldbody><body><joint name='swing' axis='0 1 0' damping='.1'/><geom "
+      "type='capsule' size='.05' fromto='0 0 0 0 0 -.5'/></body></worldbody><actuator><motor "
+      "joint='swing' ctrllimited='true' ctrlrange='0 30'/></actuator></mujoco>",
+      "pull.xml");
+  EXPECT_NE(proposal.reasons.at("max_torque").find("torques [0, 30]"), std::string::npos);
+}
+
+TEST_F(Proposal, ATorqueThatMakesAJointFasterThanAFallIsLoweredAndMarked) {
+  std::string friction = pendulum("<limit effort='8' velocity='1'/>", "0 0 1");
+  friction.insert(friction.find(" damping="), " friction='2'");
+  const PlantProposal proposal = propose(friction);
+  EXPECT_LT(proposal.options.max_torque.at(0), 8.0);
+  EXPECT_EQ(proposal.to_set, Texts({"goal", "max_torque", "tolerance"}));
+  EXPECT_NE(proposal.reasons.at("max_torque").find("lowered"), std::string::npos);
+}
+
+TEST_F(Proposal, ATorqueIsNotLoweredBecauseASmallRobotFallsFast) {
+  const std::string rod = "<geom type='capsule' size='.002' fromto='0 0 0 0 0 -.03' mass='.01'/>";
+  const PlantProposal proposal = propose(
+      "<mujoco><option timestep='.0005'><flag contact='disable'/></option><worldbody><body><joint "
+      "name='shoulder' axis='0 1 0'/>" +
+          rod + "<body pos='0 0 -.03'><joint name='elbow' axis='0 1 0'/>" + rod +
+          "</body></body></worldbody><actuator><motor joint='shoulder'/><motor "
+          "joint='elbow'/></actuator></mujoco>",
+      "small.xml");
+  EXPECT_GT(proposal.options.max_torque.at(0), 9.81 * 0.01 * (0.015 + 0.045));
+  EXPECT_GT(proposal.options.max_torque.at(1), 9.81 * 0.01 * 0.015);
+}
+
+TEST_F(Proposal, ANarrowHingeIsNotSolvedAtTheStartAndStartsWithinItsLimits) {
+  const auto hinge = [](const std::string& name, const std::string& more) {
+    return jointOf(name, "revolute", "base", name + "_rod", "0 0 1",
+                   "<limit lower='-0.1' upper='0.1' effort='2' velocity='1'/>" + more);
+  };
+  const MujocoOptions options =
+      propose(robot(rodLink("flap_rod") + rodLink("other_rod") + hinge("flap", "") +
+                    hinge("other", "<mimic joint='flap'/>")))
+          .options;
+  const double way = (options.goal[0] - options.start[0]) * 180.0 / kPi;
+  EXPECT_NEAR(std::abs(way), 2.9, 0.1);  // a quarter of the range
+  EXPECT_LT(options.tolerance, 0.3 * std::abs(way));
+  EXPECT_EQ(options.start_std, std::vector<double>({0.01, 0.0, 0.01, 0.0}));
+}
+
+TEST_F(Proposal, AVerticalSlideStartsAndEndsWhereTheCameraShowsIt) {
+  const auto lift = [](const std::string& range) {
+    return "<mujoco><worldbody><body><joint name='lift' type='slide' axis='0 0 1' " + range +
+           "/><geom type='box' size='.1 .1 .1'/></body></worldbody><actuator><motor "
+           "joint='lift'/></actuator></mujoco>";
+  };
+  const PlantProposal proposal = propose(lift("limited='true' range='-90 90'"), "lift.xml");
+  const ModelJoint& joint = proposal.joints.at(0);
+  for (const double value : {proposal.options.start.at(0), proposal.options.goal.at(0)}) {
+    EXPECT_GE(value, joint.shown_lower);
+    EXPECT_LE(value, joint.shown_upper);
+  }
+  EXPECT_TRUE(testing::names(testing::refusalOf([&] { propose(lift(""), "lift.xml"); }),
+                             {"lift", "falls without end", "range"}));
+}
+
+TEST_F(Proposal, NeitherStartNorGoalIsInsideATable) {
+  const PlantProposal proposal = propose(
+      "<mujoco><worldbody><geom type='plane' size='1 1 .1'/><body pos='0 0 .1'><joint "
+      "name='shoulder' axis='0 1 0' range='-120 120' damping='.2'/><geom type='capsule' "
+      "fromto='0 0 0 0 0 .3' size='.025'/></body></worldbody><actuator><motor joint='shoulder' "
+      "ctrlrange='-6 6'/></actuator></mujoco>",
+      "table.xml");
+  const DataPointer data = makeData(model_->get());
+  for (const std::vector<double>& pose : {proposal.options.start, proposal.options.goal}) {
+    data->qpos[0] = pose[0];
+    mj_forward(&model_->get(), data.get());
+    for (int i = 0; i < data->ncon; ++i) EXPECT_GT(data->contact[i].dist, -1e-3) << pose[0];
+  }
+}
+
+TEST_F(Proposal, AMotorLiftsTheJointsThatFollowIts) {
+  const auto finger = [](const std::string& name, const std::string& more) {
+    return rodLink(name + "_rod") +
+           jointOf(name, "continuous", "base", name + "_rod", "0 1 0", more);
+  };
+  const PlantProposal proposal =
+      propose(robot(finger("a", "") + finger("b", "<mimic joint='a'/>")));
+  EXPECT_GT(proposal.options.max_torque.at(0), 1.5 * 2.0 * 9.81 * 0.5);
+}
+
+TEST_F(Proposal, AJointMayMimicOneThatMimicsAThird) {
+  const auto finger = [](const std::string& name, const std::string& parent,
+                         const std::string& leader) {
+    return rodLink(name + "_rod") +
+           jointOf(name, "continuous", parent, name + "_rod", "0 1 0",
+                   leader.empty() ? "" : "<mimic joint='" + leader + "'/>");
+  };
+  const PlantProposal proposal = propose(
+      robot(finger("a", "base", "") + finger("b", "a_rod", "c") + finger("c", "b_rod", "a")));
+  for (const Eigen::VectorXd& pose : proposal.poses) EXPECT_EQ(pose[1], pose[0]);
 }
 
 TEST_F(Proposal, TheCameraLooksAlongTheAxesOfParallelHinges) {

@@ -1,4 +1,4 @@
-// Tests the renderer: positions in the image, equal bytes for equal states, scene disturbances.
+// Tests the renderer: positions in the image, equal bytes for equal states.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_mujoco/renderer.h"
 
@@ -181,48 +181,6 @@ TEST(Renderer, RefusesAModelWithoutACameraNamingTheKeysThatPlaceOne) {
   EXPECT_TRUE(throwsNaming<std::invalid_argument>(
       [&bare] { Renderer(bare, RenderOptions()); },
       {"no camera", "plant/camera_position", "plant/camera_look_at"}));
-}
-
-double RenderOptions::*const kShifts[] = {&RenderOptions::camera_shift,
-                                          &RenderOptions::colour_shift};
-
-TEST(SceneDisturbances, ChangeTheImageMoreOrLessAndTheModelNever) {
-  const SceneModel scene(0.4);
-  const mjModel& model = scene.model->get();
-  const std::vector<float> before(model.geom_rgba, model.geom_rgba + 4 * model.ngeom);
-  const Bytes plain = drawn(scene, colourful()).bytes;
-  for (const auto shift : kShifts) {
-    RenderOptions options = colourful();
-    options.*shift = 0.1;
-    const Bytes once = drawn(scene, options).bytes;
-    EXPECT_NE(once, plain);
-    EXPECT_EQ(drawn(scene, options).bytes, once);
-    options.*shift = 0.2;
-    EXPECT_NE(drawn(scene, options).bytes, once);
-  }
-  EXPECT_EQ(std::vector<float>(model.geom_rgba, model.geom_rgba + 4 * model.ngeom), before);
-  EXPECT_EQ(model.cam_pos[1], -4.0);
-}
-
-TEST(SceneDisturbances, MoveTheCameraAroundThePointThatItLooksAt) {
-  const SceneModel scene;
-  RenderOptions options = colourful();
-  const CameraModel plain = Renderer(scene.model, options).camera(*scene.data);
-  options.colour_shift = 0.1;  // does not change the camera
-  EXPECT_EQ(Renderer(scene.model, options).camera(*scene.data).position, plain.position);
-  options.camera_shift = 0.1;
-  const CameraModel moved = Renderer(scene.model, options).camera(*scene.data);
-  const Eigen::Vector3d ahead = plain.rotation.col(2);
-  const double distance =
-      (Eigen::Vector3d(scene.model->get().stat.center) - plain.position).dot(ahead);
-  const Eigen::Vector3d to_target = plain.position + distance * ahead - moved.position;
-  EXPECT_TRUE((moved.rotation.transpose() * moved.rotation).isIdentity(1e-5));
-  EXPECT_LT(to_target.normalized().cross(moved.rotation.col(2)).norm(), 1e-5);
-  EXPECT_NEAR(to_target.norm() / distance, 1.0, 0.05 + 1e-5);
-  EXPECT_GT((moved.position - plain.position).norm(), 0.01);
-  // Two rotations of at most 9 degrees each change the direction of the optical axis. A third one
-  // rotates the image around this axis.
-  EXPECT_GT(moved.rotation.col(2).dot(ahead), std::cos(0.1 * M_PI * std::sqrt(0.5)));
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 #include <ddm_msgs/testing/expect_error.h>
 #include <gtest/gtest.h>
 
+#include <boost/algorithm/string/case_conv.hpp>
+#include <clocale>
 #include <cmath>
 #include <cstring>
 #include <sstream>
@@ -10,6 +12,7 @@
 #include <vector>
 
 #include "ddm_mujoco/mujoco_model.h"
+#include "load_model.h"
 #include "model_folder.h"
 
 namespace ddm {
@@ -164,6 +167,23 @@ TEST_F(UrdfTest, NamesALinkWithAnInertiaThatNoBodyHasButTakesRounding) {
   EXPECT_EQ(load(balanced)->get().njnt, 1);
 }
 
+TEST_F(UrdfTest, CorrectsInertiasInALocaleWithADecimalComma) {
+  if (std::setlocale(LC_NUMERIC, "de_DE.UTF-8") == nullptr) GTEST_SKIP() << "no locale de_DE.UTF-8";
+  Leg leg;
+  leg.inertia = "<inertia ixx='0.001' iyy='0.01' izz='0.015' ixy='0' ixz='0' iyz='0'/>";
+  EXPECT_EQ(refusalOf([&] { load(leg); }), "");
+  std::setlocale(LC_NUMERIC, "C");
+}
+
+TEST_F(UrdfTest, TakesAnyInertiaOfTheRootLinkWhichNeverMoves) {
+  std::string text = Leg().text();
+  const std::string base = "<link name='base'/>";
+  text.replace(text.find(base), base.size(),
+               "<link name='base'><inertial><mass value='1'/><inertia ixx='0.02' iyy='0.02' "
+               "izz='0.5' ixy='0.3' ixz='0' iyz='0'/></inertial></link>");
+  EXPECT_EQ(refusalOf([&] { folder_.loadText(text, "leg.urdf"); }), "");
+}
+
 TEST_F(UrdfTest, NamesAShapeThatUrdfDoesNotHave) {
   Leg leg;
   leg.shape = "<capsule radius='0.05' length='1'/>";
@@ -306,9 +326,26 @@ TEST_F(UrdfTest, ReadsMeshesByAnyNameAndInText) {
     EXPECT_EQ(model->get().nmeshvert, 4) << name;
   }
   Leg leg;
+  leg.shape = "<mesh filename='meshes/capitals.stl'/>";
+  folder_.write("urdf/meshes/capitals.stl",
+                " \n" + boost::to_upper_copy(readModelFile(folder_.path() + "/meshes/text.stl")));
+  EXPECT_EQ(load(leg)->get().nmeshvert, 4);
   leg.shape = "<mesh filename='package://elsewhere/UPPER.STL'/>";
   leg.more = "<mujoco><compiler meshdir='../meshes'/></mujoco>";
   EXPECT_EQ(load(leg)->get().nmesh, 1);
+}
+
+TEST_F(UrdfTest, TakesAFlatMeshUnlessContactsNeedItsHull) {
+  folder_.write("urdf/sheet.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n");
+  Leg leg;
+  leg.shape +=
+      "</geometry></visual><collision><geometry><mesh filename='sheet.obj'/></geometry>"
+      "</collision><visual><geometry><sphere radius='0.1'/>";
+  EXPECT_EQ(refusalOf([&] { load(leg); }), "");
+  leg.more = "<mujoco><option><flag contact='enable'/></option></mujoco>";
+  const std::string text = refusalOf([&] { load(leg); });
+  EXPECT_TRUE(testing::names(text, {"/urdf/sheet.obj", "no hull"}));
+  EXPECT_EQ(text.find("1_sheet"), std::string::npos) << text;
 }
 
 TEST_F(UrdfTest, NamesAMeshThatMujocoCannotRead) {

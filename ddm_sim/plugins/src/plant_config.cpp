@@ -125,7 +125,20 @@ std::vector<std::string> plantsOf(const std::string& package) {
 bool namesPlantFile(const std::string& name) { return fs::path(name).extension() == ".yaml"; }
 
 std::string plantFile(const std::string& name) {
-  if (namesPlantFile(name) && fs::is_regular_file(name)) return name;
+  if (namesPlantFile(name)) {
+    if (fs::is_regular_file(name)) return name;
+    throw std::invalid_argument("unknown plant '" + name +
+                                "': there is no such file; correct its name, or make the file by "
+                                "`rosrun ddm_sim new_plant MODEL --out " +
+                                name + "`");
+  }
+  const std::string ending = fs::path(name).extension().string();
+  if (ending == ".urdf" || ending == ".xml") {
+    throw std::invalid_argument("unknown plant '" + name +
+                                "': a plant is a file that ends in .yaml; make one of this model "
+                                "by `rosrun ddm_sim new_plant " +
+                                name + " --out FILE.yaml`");
+  }
   const std::string::size_type slash = name.find('/');
   const bool ours = slash == std::string::npos;
   const std::string package = ours ? "ddm_sim" : name.substr(0, slash);

@@ -29,7 +29,6 @@ enum class StreamRole : std::uint32_t {
   kGoalNoise = 9,       ///< pixel noise of the goal image
   kClutter = 10,        ///< background pattern of the camera
   kGoal = 11,           ///< goals of episodes
-  kScene = 12,          ///< disturbances of the scene: camera pose, colours, lights
   kGpSamples = 13       ///< samples that select the length scales of a Gaussian process
 };
 

@@ -73,8 +73,6 @@ struct MujocoOptions : PlantOptions {
     visitor("camera_look_at", look.look_at);
     visitor("colour", look.colour);
     visitor("supersampling", look.supersampling);
-    visitor("camera_shift", look.camera_shift);
-    visitor("colour_shift", look.colour_shift);
   }
 
   /// All problems with these values, in words that a user can act on. Empty means valid. The

@@ -29,6 +29,7 @@ struct ModelJoint {
   double effort = 0.0;
 
   bool isHinge() const { return kind == JointKind::kAngle; }
+  bool turnsFreely() const { return isHinge() && !limited; }
   bool shownInPart() const { return limited && (shown_lower > lower || shown_upper < upper); }
 };
 

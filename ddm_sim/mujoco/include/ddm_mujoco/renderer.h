@@ -15,7 +15,6 @@
 namespace ddm {
 
 class EglContext;
-class Scene;
 
 /// How a scene is drawn. The camera is either one of the model (`camera`), or an additional one at
 /// a given position (`position`, `look_at`).
@@ -30,12 +29,6 @@ struct RenderOptions {
   /// Also draws the geoms and sites of group kPeopleGroup, and averages edges over four points of
   /// each pixel.
   bool for_people = false;
-
-  // Disturbances of the scene, as shares of the largest change. 0: no disturbance, 0.1: easy.
-  /// Motion of the camera around the point that it looks at, and rotation.
-  double camera_shift = 0.0;
-  /// Change of the colour of each geom, site, material, texture and sky.
-  double colour_shift = 0.0;
 
   /// Vertical field of view of a camera at `position` [deg]
   static constexpr double kFieldOfView = 45.0;
@@ -83,7 +76,9 @@ class Renderer {
   void openContext();
 
   RenderOptions options_;
-  std::unique_ptr<Scene> scene_;
+  std::shared_ptr<const MujocoModel> model_;
+  /// The model with the image size and lens of this renderer. Its arrays are those of model_.
+  mjModel look_;
   mjvCamera camera_;
   mjvOption shown_;
   mjvScene drawn_;

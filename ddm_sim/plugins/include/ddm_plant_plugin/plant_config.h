@@ -33,7 +33,8 @@ bool namesPlantFile(const std::string& name);
 /// Returns the path of the file that describes a plant: config/NAME.yaml of ddm_sim; for
 /// PACKAGE/NAME, config/NAME.yaml of that package; or the name itself if it is the path of an
 /// existing .yaml file.
-/// @throws std::invalid_argument with the available plants if there is no such file or package
+/// @throws std::invalid_argument with the available plants or the remedy if there is no such file or
+///         package, or if the name is that of a model file
 std::string plantFile(const std::string& name);
 
 }  // namespace ddm
