@@ -77,6 +77,10 @@ InProcessDriver::InProcessDriver(const Configuration& configuration)
         "sim/lockstep must be true where everything runs in one process: use experiment.launch for "
         "real time");
   }
+  if (configuration.robot) {
+    throw std::invalid_argument(
+        "the block robot must be left out where a plant is simulated: use robot.launch instead");
+  }
 }
 
 TrialOutcome InProcessDriver::runTrial(const TrialRequest& request, const PhaseCallback& progress) {

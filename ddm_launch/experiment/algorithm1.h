@@ -25,7 +25,6 @@ namespace ddm {
 /// already, only the modification time of summary.yaml changes.
 /// @param show  receives the rows of all finished trials at the start and after each trial
 /// @throws std::runtime_error naming the failure; all finished trials are kept
-/// @throws std::runtime_error with what failed; all finished trials are kept
 void runExperiment(
     const Configuration& configuration, Driver* driver, RunFolder* folder, Progress* progress,
     const std::function<void(const std::vector<TrialRow>&)>& show = [](const auto&) {});

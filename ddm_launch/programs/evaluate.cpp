@@ -179,11 +179,12 @@ void run(const Request& request, ddm::Configuration configuration) {
   std::cerr << "model " << request.model << " on " << configuration.experiment.plant
             << ", mpc of preset " << configuration.experiment.preset << "\n";
   ddm::requireModelFits(model, request.model, configuration);
+  // create_directories() fails for the path "."
+  boost::filesystem::create_directories(boost::filesystem::absolute(request.out));
+  ddm::requireWritable(request.out + "/evaluation.csv");
   const std::vector<ddm::TrialRow> rows =
       evaluateAll(configuration, request, static_cast<int>(model->info().trial));
   const std::string summary = summaryOf(rows, request, configuration);
-  // create_directories() fails for the path "."
-  boost::filesystem::create_directories(boost::filesystem::absolute(request.out));
   ddm::writeFileAtomically(request.out + "/evaluation.csv", csvOf(rows));
   ddm::writeFileAtomically(request.out + "/evaluation.yaml", summary + "\n");
   std::cout << summary << "\nrows: " << request.out << "/evaluation.csv\n";

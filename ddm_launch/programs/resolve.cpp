@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <boost/filesystem.hpp>
-#include <cstdio>
 #include <iostream>
 #include <iterator>
 #include <memory>
@@ -38,17 +37,6 @@ struct Request {
   std::string print;
   std::string path;
 };
-
-/// Parses X,Y,WIDTH,HEIGHT, the crop of the robot's camera [pixels].
-void setCrop(const std::string& text, Arguments* arguments) {
-  std::vector<int> crop(4);
-  char rest = 0;
-  if (std::sscanf(text.c_str(), "%d,%d,%d,%d%c", &crop[0], &crop[1], &crop[2], &crop[3], &rest) !=
-      4) {
-    throw po::error("--crop must be X,Y,WIDTH,HEIGHT in whole pixels, got '" + text + "'");
-  }
-  arguments->set("robot/crop", crop);
-}
 
 /// Splits the text of a launch argument into paths of bags, which are separated by blanks. Quotes are
 /// parsed only if the text as a whole is not a file and its words are not all files.
@@ -106,9 +94,6 @@ bool configure(int argc, char** argv, Request* request) {
   using Text = std::string;
   using Texts = std::vector<std::string>;
   Arguments* const arguments = &request->arguments;
-  const auto call = [arguments](void (*set)(const Text&, Arguments*)) {
-    return po::value<Text>()->notifier([=](const Text& text) { set(text, arguments); });
-  };
   po::options_description options = configurationOptions(kAbout, arguments);
   auto add = options.add_options();
   add("defaults", po::value(&arguments->defaults)->composing(),
@@ -119,11 +104,10 @@ bool configure(int argc, char** argv, Request* request) {
     setBags(texts, arguments);
   }),
       "bags that count as trials before trial 0; a word may name several, a blank between two");
-  add("crop", call(setCrop), "X,Y,WIDTH,HEIGHT: the part of a robot's camera image that counts");
-  add("motors-of", call(setMotors),
+  add("motors-of",
+      po::value<Text>()->notifier([arguments](const Text& plant) { setMotors(plant, arguments); }),
       "plant whose motors the robot has: robot/max_torque is that of its file");
-  add("print", po::value(&request->print),
-      "BLOCK/KEY: print this value alone; status_frequency: of the action run_trial [Hz]");
+  add("print", po::value(&request->print), "BLOCK/KEY: print this value alone");
   add("path", po::value(&request->path), "print this path alone, absolute and without ~");
   std::vector<char*> words = givenWords(argc, argv);
   return parseCommandLine(static_cast<int>(words.size()), words.data(), options);
@@ -178,13 +162,8 @@ void run(const Request& request) {
     std::cout << YAML::Dump(blocks) << "\n";
     return;
   }
-  if (request.print == "status_frequency") {
-    // In simulated time, actionlib's default of 5 Hz would mean a status message per time step.
-    std::cout << (blocks["sim"]["lockstep"].as<bool>(true) ? "0.1" : "5.0") << "\n";
-    return;
-  }
   const std::string::size_type slash = request.print.find('/');
-  std::cout << blocks[request.print.substr(0, slash)][request.print.substr(slash + 1)] << "\n";
+  std::cout << blocks[request.print.substr(0, slash)][request.print.substr(slash + 1)];
 }
 
 }  // namespace

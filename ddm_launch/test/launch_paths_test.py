@@ -28,9 +28,10 @@ def test_launch_files_get_all_their_paths(tmp_path):
                                 "config:=" + there + "more.yaml")
     assert blocks["experiment"]["runs"] == str(tmp_path / "010")
     assert (blocks["start"]["model"], blocks["start"]["bags"]) == (str(odd / "m.ddm"), [str(odd / "a.bag")])
-    assert values["/run_trial/actionlib_status_frequency"] == 5.0 and values["/use_sim_time"] is False  # from the file
-    _, blocks = parameters("robot.launch", "runs:=" + there + "run", "camera:=c", "goal:=" + there + "goal.png")
+    assert values["/use_sim_time"] is False  # from the file
+    _, blocks = parameters("robot.launch", "runs:=" + there + "run", "camera:=c", "crop:=1,2,30,40", "goal:=" + there + "goal.png")
     assert (blocks["robot"]["goal_file"], blocks["experiment"]["runs"]) == (str(odd / "goal.png"), str(odd / "run"))
+    assert blocks["robot"]["crop"] == [1, 2, 30, 40]
     values, _ = parameters("record.launch", "bag:=" + there + "a.bag", "model:=true")
     assert (values["/trial_node/run/bag"], values["/trial_node/run/model"]) == (str(odd / "a.bag"), str(tmp_path / "true"))
     values, _ = parameters("control.launch", "model:=" + there + "m.ddm")

@@ -113,6 +113,8 @@ def test_effort_limits_and_motors_that_the_file_does_not_give_are_estimated_or_a
     assert "plant/max_torque" in output and "SET: " in maker.plant.read_text().partition("max_torque: ")[0]
     plant, output = maker.make("swing.urdf", swing(0.0), "--max-torque", "0.7", "--force")
     assert plant["max_torque"] == [0.7]
+    plant, _ = maker.make("swing.urdf", swing().replace('effort="2"', 'effort="1.23456789"'), "--force")
+    assert plant["max_torque"] == [1.234568]  # slightly above the file's limit
     os.remove(maker.plant)
     # existing files are not replaced
     maker.assert_refused(2, ["my_plant.png", "--force"], "swing.urdf", "--out", "my_plant.yaml")

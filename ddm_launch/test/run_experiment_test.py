@@ -74,6 +74,7 @@ def test_a_run_that_was_killed_goes_on_as_if_nothing_had_happened(tmp_path):
 def test_bad_options_are_refused_by_name_and_leave_no_folder(tmp_path):
     (tmp_path / "bad.yaml").write_text("mpc: {horzion: 3, epsilon: 1.5}\nplant: {dt: fast}\ntrial: {num_steps: 0}\n")
     (tmp_path / "real_time.yaml").write_text("sim: {lockstep: false}\n")
+    (tmp_path / "robot.yaml").write_text("robot: {max_torque: 0.5}\n")
     out = str(tmp_path / "out")
     for words, more in (
             (["'--out'"], []), (["--nonsense"], ["--out", out, "--nonsense"]), (["positional"], ["--out", out, "paper"]),
@@ -85,5 +86,6 @@ def test_bad_options_are_refused_by_name_and_leave_no_folder(tmp_path):
             (["missing.yaml"], ["--out", out, "--config", tmp_path / "missing.yaml"])):
         run_experiment(*more, code=2, words=words)
     run_experiment("--config", tmp_path / "real_time.yaml", *arguments(out), code=1, words=["sim/lockstep"])
+    run_experiment("--config", tmp_path / "robot.yaml", *arguments(out), code=1, words=["robot.launch"])
     run_experiment(*arguments("/proc/ddm"), code=1, words=["cannot", "/proc/ddm"])
     assert not os.path.exists(out)

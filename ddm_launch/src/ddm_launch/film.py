@@ -43,7 +43,7 @@ def plane_of(points):
 
 def seen_images(run, trial, image_size):
     """Images of all bags up to a trial  [N x size x size]. Raises Failure if a bag cannot be read."""
-    patterns = [os.path.join(glob.escape(run), "trial_%03d" % number, "**", "*.bag") for number in range(trial + 1)]
+    patterns = [os.path.join(glob.escape(run), "trial_%03d" % number, "**", "trial.bag") for number in range(trial + 1)]
     bags = [path for pattern in patterns for path in sorted(glob.glob(pattern, recursive=True))]
     try:
         return np.concatenate([bag["images"] for bag in read_bags(bags, image_size)])

@@ -55,7 +55,11 @@ def draw_images(folder, start, torques=(), with_views=False, **episode):
     except ImportError as error:
         raise Failure("the Python bindings draw the images, and are missing (%s): build with -DDDM_PYTHON=ON" % error) from None
     plant = read_setting(folder, "experiment/plant")
-    env = ddm_sim.make(plant, plant=read_yaml(folder, "config.yaml").get("plant", {}))
+    try:
+        env = ddm_sim.make(plant, plant=read_yaml(folder, "config.yaml").get("plant", {}))
+    except ValueError as error:
+        raise Failure("the plant %s of %s cannot be made (%s): if its file has moved, put it back" % (
+            plant, folder, error)) from error
     seed = episode.pop("seed", 0)
     image, info = env.reset(seed=seed, options=dict(episode, start=start))
     images, views, goal = [grey(image)], [], grey(info["goal_image"])

@@ -24,6 +24,8 @@ MAY_DIFFER = {"version", "renderer", "experiment/seed", "experiment/trials", "ex
 # The kernel ends a process when its parent is killed, even if the parent could not end the process itself. Each process
 # in the chain sweep - parallel - (ssh -) script - program has this protection.
 DIE_WITH_PARENT = ["setpriv", "--pdeathsig", "KILL"]
+# The program itself ends by SIGTERM, so that it can still remove the lock of its folder.
+END_WITH_PARENT = ["setpriv", "--pdeathsig", "TERM"]
 
 SCRIPT = """\
 #!/bin/bash
@@ -157,7 +159,7 @@ class SweepFolder:
     def prepare(self, seeds):
         quoted = {name: shlex.quote(text) for name, text in (
             ("folder", self.path), ("setup", self._setup), ("working_folder", os.getcwd()))}
-        write_file(self.script, SCRIPT.format(command=" ".join(map(shlex.quote, DIE_WITH_PARENT + self._command)), **quoted))
+        write_file(self.script, SCRIPT.format(command=" ".join(map(shlex.quote, END_WITH_PARENT + self._command)), **quoted))
         for seed in seeds:
             pathlib.Path(self.log(seed)).unlink(missing_ok=True)
 
