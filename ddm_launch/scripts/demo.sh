@@ -90,10 +90,11 @@ TEXT
 
 draw_and_print_result() {
   say "Drawing"
-  local figure
-  for figure in learning_curve film_strip; do
-    rosrun ddm_launch figure "$figure" "$runs" --out "$runs/$figure.png" || fail "the figure $figure was not drawn: see the line above."
-  done
+  local curve figure=learning_curve
+  rosrun ddm_launch figure "$figure" "$runs" --out "$runs/$figure.png" &
+  curve=$!
+  rosrun ddm_launch figure film_strip "$runs" --out "$runs/film_strip.png" || fail "the figure film_strip was not drawn: see the line above."
+  wait "$curve" || fail "the figure $figure was not drawn: see the line above."
   say "Summary ($runs/summary.yaml)"
   sed 's/^/  /' "$runs/summary.yaml"
   cat <<TEXT

@@ -20,9 +20,11 @@ class AppliedTorques {
                                ros::TransportHints().tcpNoDelay());
   }
 
-  /// Clears all torques for a new trial, because a simulator that restarts reuses its stamps.
-  void clear() {
-    queue_.clear();
+  /// Forgets all torques for a new trial, because a simulator that restarts reuses its stamps. Those
+  /// in the queue are received first: if their callbacks were removed instead, each later callback
+  /// would receive a torque that is too old.
+  void forget() {
+    queue_.callAvailable();
     torques_.clear();
   }
 

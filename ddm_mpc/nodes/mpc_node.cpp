@@ -145,7 +145,7 @@ std::shared_ptr<TrialRun> MpcNode::preparedTrial() {
   lock.lock();
   if (trial_ != trial) return nullptr;  // the trial was cancelled meanwhile
   preparing_ = false;
-  applied_.clear();
+  applied_.forget();
   last_progress_ = ros::SteadyTime::now();
   health_.expect(ControlHealth::Expected::kImage);
   return trial;

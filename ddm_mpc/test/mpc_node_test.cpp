@@ -87,6 +87,7 @@ class MpcNodeOfAPlantTest : public MpcNodeTest {
       EXPECT_TRUE(waitUntil([&] { return torque_.messages.size() > step; }));
     }
     expectEnd(State::SUCCEEDED);
+    applied_.publish(torque_.messages.back());  // which must not delay those of the next trial
     return torque_.messages.back().torque.at(0);
   }
 
