@@ -90,11 +90,9 @@ TEXT
 
 draw_and_print_result() {
   say "Drawing"
-  local curve figure=learning_curve
-  rosrun ddm_launch figure "$figure" "$runs" --out "$runs/$figure.png" &
-  curve=$!
-  rosrun ddm_launch figure film_strip "$runs" --out "$runs/film_strip.png" || fail "the figure film_strip was not drawn: see the line above."
-  wait "$curve" || fail "the figure $figure was not drawn: see the line above."
+  rosrun ddm_launch figure learning_curve "$runs" --out "$runs/learning_curve.png" &
+  rosrun ddm_launch figure film_strip "$runs" --out "$runs/film_strip.png" || fail "the film strip was not drawn: see the lines above."
+  wait $! || fail "the learning curve was not drawn: see the lines above."
   say "Summary ($runs/summary.yaml)"
   sed 's/^/  /' "$runs/summary.yaml"
   cat <<TEXT

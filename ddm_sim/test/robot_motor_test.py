@@ -167,7 +167,7 @@ class RobotEndTest(RobotCase):
 
     def test_the_motor_stops_and_the_node_ends_where_its_roslaunch_is_killed_or_suspended(self):
         for number in (signal.SIGKILL, signal.SIGSTOP):
-            robot = self.start(started_by=["sh", "-c", '"$@" & wait', "sh"])  # the shell is in the place of roslaunch
+            robot = self.start(started_by=["sh", "-c", '"$@" & wait', "sh"])  # the shell stands for roslaunch
             self.assertTrue(robot.enable(True).success)
             robot.answer(2.0)
             robot.waitForEffort(2.0)

@@ -32,9 +32,9 @@ double usualLag(const std::vector<Message>& messages) {
   return median(lags);
 }
 
-/// Sorts messages by time of recording. Invalid times are an error, since they cannot be compared.
-/// So is a clock that was set back to a time that it had before: the order of such messages is
-/// lost. Merged bags may be in any order.
+/// Sorts messages by time of recording. Invalid times are refused, because they cannot be compared.
+/// Messages are also refused if the clock of the recording was set back to a time that it had had
+/// before, because their order cannot be told from their times. Merged bags may be in any order.
 /// @param messages  in the order of the file
 template <class Message>
 void sortByRecording(const char* what, std::vector<Message>* messages) {

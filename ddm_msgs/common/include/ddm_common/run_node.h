@@ -87,13 +87,17 @@ void runUntilEnd(const Stop& stop) {
   std::signal(SIGTSTP, SIG_IGN);
   if (std::signal(SIGHUP, internal::onSignal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
   const pid_t parent = getppid();
-  while (ros::ok() && !internal::end_requested) {
+  const auto parent_runs = [parent] {
+    return getppid() == parent && !internal::isSuspended(parent);
+  };
+  while (ros::ok() && !internal::end_requested && parent_runs()) {
     ros::WallDuration(0.05).sleep();
-    if (getppid() == parent && !internal::isSuspended(parent)) continue;
-    ROS_ERROR("the process that started this node has ended or is suspended: this node ends");
-    break;
   }
   stop();
+  // The log comes after the last message, because a stopped terminal would block it.
+  if (!parent_runs()) {
+    ROS_ERROR("the process that started this node has ended or is suspended: this node ends");
+  }
   ros::WallDuration(0.1).sleep();  // gives the message time to leave
   internal::endSoon(EXIT_SUCCESS);
   ros::shutdown();
