@@ -13,8 +13,8 @@ Runs the experiments and makes their tables and figures, by the rules in ddm_lau
 each goal, and runs/ with everything that the experiments left. Run the same command again to resume. A finished run is
 not made again: after a change of code or settings, remove its folder in runs/ and its table first."""
 GOALS = """\
-goals: paper (the paper's experiments), efficient (as few images as possible), any file that the Makefile has a rule for,
-and variables of make: SEEDS=2 (at most two seeds of each sweep), PAPER=debug or EFFICIENT=debug (another preset),
+goals: paper (the paper's experiments), efficient (as few images as possible), underactuated (the cart-pole), any file
+that the Makefile has a rule for, and variables of make: SEEDS=2 (at most two seeds of each sweep), PAPER=debug or EFFICIENT=debug (another preset),
 PILCO= (without PILCO, which takes hours)."""
 FIGURES = {"angle_trajectories": curves.TRAJECTORIES, "feature_plane": features.PLANE,
            "pendulum_feature_space": features.SPACE, "prediction_strip": features.STRIP, "task": curves.TASK}
