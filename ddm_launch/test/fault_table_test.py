@@ -9,5 +9,5 @@ def test_all_quick_cases_pass(tmp_path):
     header, *rows = read_rows(tmp_path, "faults.csv")
     assert header == ["case", "phase", "fault", "expected", "observed", "passed"]
     assert not [row for row in rows if row[3] != row[4] or row[5] != "1"], output
-    assert len(rows) == 8
-    assert "8 passed, 0 failed" in output
+    assert len(rows) == 7
+    assert "7 passed, 0 failed" in output

@@ -8,7 +8,7 @@ from tqdm import tqdm
 
 from ddm_launch.command import Failure, number, program_parser, run_program
 from ddm_launch.run_folder import write_table
-from ddm_qa.fault_cases import CASES, FAULTS_OF_ROOT, QUICK
+from ddm_qa.fault_cases import CASES, FAULT_OF_ROOT, QUICK
 from ddm_qa.fault_run import FaultBench
 
 COLUMNS = ["case", "phase", "fault", "expected", "observed", "passed"]
@@ -20,7 +20,7 @@ one fault in it, and then the same command again without the fault. Compares wha
 EPILOG = """\
 DIR/faults.csv: case,phase,fault,expected,observed,passed, one row a case. DIR/logs/CASE.txt: what its launches said.
 The folder of a case that failed stays in DIR. Exit code: 0 all passed, 1 not, 2 bad options. Cases that mount a small
-or a read-only file system need root, and are left out without it."""
+file system need root, and are left out without it."""
 
 
 def run(options):
@@ -30,7 +30,7 @@ def run(options):
     if not cases:
         raise Failure("no case has one of these words in its name: %s" % ", ".join(options.only))
     if os.geteuid() != 0:
-        skipped = [case for case in cases if case.fault in FAULTS_OF_ROOT]
+        skipped = [case for case in cases if case.fault == FAULT_OF_ROOT]
         cases = [case for case in cases if case not in skipped]
         print("SKIPPED, because these need root to mount file systems:\n - %s" % "\n - ".join(case.name for case in skipped))
     bench = FaultBench(out, options.patience)

@@ -65,15 +65,11 @@ def digest(content):
     return hashlib.sha256(content).hexdigest()
 
 
-def digests(folder):
-    return {name: digest(read_bytes(folder, name)) for name in files_in(folder)}
-
-
 def digests_of_finished(folder):
     """{name: digest} of all files of finished trials, and {"row k": digest} of their rows in trials.csv."""
     count = num_finished(folder)
     folders = tuple("%s_%03d/" % (kind, k) for kind in ("trial", "evaluation") for k in range(count))
-    found = {name: value for name, value in digests(folder).items() if name.startswith(folders)}
+    found = {name: digest(read_bytes(folder, name)) for name in files_in(folder) if name.startswith(folders)}
     rows = read_bytes(folder, "trials.csv").splitlines() if count > 0 else []
     return dict(found, **{"row %d" % k: digest(row) for k, row in enumerate(rows)})
 
