@@ -61,8 +61,7 @@ void runClosedLoop(Environment* environment, std::shared_ptr<Policy> policy,
       if (environment->numSteps() > steps + 1) explorer.startSegment();
     }
     frame.image = imageMessage(rendered, stampOf(*environment), optical_frame);
-    frame.seen = decodeImage(frame.image, image_size);
-    frame.decision = explorer.decide(frame.seen);
+    frame.decision = explorer.decide(decodeImage(frame.image, image_size));
     take(frame);
   }
 }

@@ -21,7 +21,6 @@ namespace ddm {
 struct ClosedLoopFrame {
   int index = 0;  ///< number of the image in this episode, from 0
   sensor_msgs::Image image;
-  Image seen;  ///< the image as the learner receives it
   Decision decision;
 };
 

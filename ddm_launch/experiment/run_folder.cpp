@@ -256,7 +256,7 @@ void RunFolder::writeRun(const RunId& run, const TrialOutcome& outcome) {
   }
   // This file marks the recording as complete, see isRecorded().
   write(folder + "/torques.csv",
-        formatTorquesCsv({outcome.torques, outcome.exploratory}, torqueNames(configuration_)));
+        formatTorquesCsv(outcome.torques, outcome.exploratory, torqueNames(configuration_)));
 }
 
 void RunFolder::writeTraining(int trial, const TrainingOutcome& outcome) {

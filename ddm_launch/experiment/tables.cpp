@@ -91,22 +91,6 @@ double duration(const std::string& cell) {
   return value;
 }
 
-void requireStep(const std::string& cell, std::size_t step) {
-  if (cell == std::to_string(step)) return;
-  throw std::runtime_error("must be step " + std::to_string(step) + ", got " + cell);
-}
-
-/// The numbers in cells begin ... begin + size - 1 of a row.
-Eigen::VectorXd numbersOf(const Cells& cells, std::size_t begin, std::size_t size) {
-  Eigen::VectorXd numbers(static_cast<Eigen::Index>(size));
-  for (std::size_t i = 0; i < size; ++i) {
-    numbers[static_cast<Eigen::Index>(i)] = finiteNumber(cells[begin + i]);
-  }
-  return numbers;
-}
-
-std::string torquesHeader(const Cells& names) { return csvLine("step", names, "exploratory"); }
-
 std::string trajectoryHeader(const Cells& names) { return csvLine("step", "time_s", names); }
 
 std::string milliseconds(double value) { return boost::str(boost::format("%.3f") % value); }
@@ -167,10 +151,12 @@ std::vector<std::string> featureNames(int feature_dim, const std::string& name) 
   return names;
 }
 
-std::string formatTorquesCsv(const TorqueRows& rows, const std::vector<std::string>& names) {
-  std::string text = torquesHeader(names);
-  for (std::size_t step = 0; step < rows.torques.size(); ++step) {
-    const auto size = static_cast<std::size_t>(rows.torques[step].size());
+std::string formatTorquesCsv(const std::vector<Eigen::VectorXd>& torques,
+                             const std::vector<bool>& exploratory,
+                             const std::vector<std::string>& names) {
+  std::string text = csvLine("step", names, "exploratory");
+  for (std::size_t step = 0; step < torques.size(); ++step) {
+    const auto size = static_cast<std::size_t>(torques[step].size());
     if (size != names.size()) {
       throw std::invalid_argument("torques.csv: step " + std::to_string(step) + " has " +
                                   std::to_string(size) + " torque(s), the header " +
@@ -178,7 +164,7 @@ std::string formatTorquesCsv(const TorqueRows& rows, const std::vector<std::stri
                                   "): the plant or robot of the configuration is not the one that "
                                   "ran");
     }
-    text += csvLine(step, rows.torques[step], bool(rows.exploratory[step]));
+    text += csvLine(step, torques[step], bool(exploratory[step]));
   }
   return text;
 }
@@ -207,25 +193,19 @@ std::string formatTrialsCsv(const std::vector<TrialRow>& rows) {
   return text;
 }
 
-TorqueRows parseTorquesCsv(const std::string& text, const std::vector<std::string>& names,
-                           const std::string& source) {
-  TorqueRows rows;
-  parseCsv(text, torquesHeader(names), source, [&](const Cells& cells) {
-    requireStep(cells[0], rows.torques.size());
-    rows.torques.push_back(numbersOf(cells, 1, names.size()));
-    rows.exploratory.push_back(flag(cells.back()));
-  });
-  return rows;
-}
-
 Eigen::MatrixXd parseTrajectoryCsv(const std::string& text, const std::vector<std::string>& names,
                                    const std::string& source) {
   Eigen::MatrixXd states(static_cast<Eigen::Index>(names.size()), 0);
-  parseCsv(text, trajectoryHeader(names), source, [&](const Cells& cells) {
-    requireStep(cells[0], static_cast<std::size_t>(states.cols()));
+  parseCsv(text, trajectoryHeader(names), source, [&states](const Cells& cells) {
+    const Eigen::Index step = states.cols();
+    if (cells[0] != std::to_string(step)) {
+      throw std::runtime_error("must be step " + std::to_string(step) + ", got " + cells[0]);
+    }
     finiteNumber(cells[1]);
-    states.conservativeResize(Eigen::NoChange, states.cols() + 1);
-    states.rightCols(1) = numbersOf(cells, 2, names.size());
+    states.conservativeResize(Eigen::NoChange, step + 1);
+    for (Eigen::Index i = 0; i < states.rows(); ++i) {
+      states(i, step) = finiteNumber(cells[static_cast<std::size_t>(i) + 2]);
+    }
   });
   return states;
 }

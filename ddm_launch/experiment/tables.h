@@ -39,16 +39,14 @@ std::string csvLine(const Cells&... cells) {
 /// Column names of a feature: z_1, z_2, ... or NAME_1, NAME_2, ...
 std::vector<std::string> featureNames(int feature_dim, const std::string& name = "z");
 
-/// Content of torques.csv: N torques of an episode.
-struct TorqueRows {
-  std::vector<Eigen::VectorXd> torques;  ///< N vectors [N m]
-  std::vector<bool> exploratory;         ///< N flags, true for a random torque
-};
-
 /// The text of torques.csv: a header and one row per step.
-/// @param names  names of the torques, with units
+/// @param torques      N vectors [N m]
+/// @param exploratory  N flags, true for a random torque
+/// @param names        names of the torques, with units
 /// @throws std::invalid_argument if a row does not have one torque per name
-std::string formatTorquesCsv(const TorqueRows& rows, const std::vector<std::string>& names);
+std::string formatTorquesCsv(const std::vector<Eigen::VectorXd>& torques,
+                             const std::vector<bool>& exploratory,
+                             const std::vector<std::string>& names);
 
 /// The text of trajectory.csv: a header and the true state at each of N images.
 /// @param times   N times since the first image [s]
@@ -64,12 +62,10 @@ std::string formatTrajectoryCsv(const std::vector<double>& times,
 /// goal/error_unit in config.yaml.
 std::string formatTrialsCsv(const std::vector<TrialRow>& rows);
 
-/// Inverse functions of the three functions above. The states are the columns of a matrix
+/// Inverse functions of the two functions above. The states are the columns of a matrix
 /// [names.size() x N].
 /// @param source  path of the file, for error messages
 /// @throws std::runtime_error with source, line and reason
-TorqueRows parseTorquesCsv(const std::string& text, const std::vector<std::string>& names,
-                           const std::string& source);
 Eigen::MatrixXd parseTrajectoryCsv(const std::string& text, const std::vector<std::string>& names,
                                    const std::string& source);
 std::vector<TrialRow> parseTrialsCsv(const std::string& text, const std::string& source);

@@ -12,7 +12,7 @@ from rooms import PACKAGE
 from ddm_launch import figure, figure_style, film, learning_curve, success_rate
 from ddm_launch.command import Failure
 from ddm_launch.plant import draw_evaluation
-from ddm_launch.run_folder import read_trials
+from ddm_launch.run_folder import read_images, read_trials
 from ddm_model.model import load
 from ddm_study import study
 
@@ -133,7 +133,7 @@ def test_what_a_film_expects_is_what_the_model_says_a_second_before(run):
     assert list(torques) == ["torque_nm"] and clip.expected[:1 + steps] == (1 + steps) * [None]
     then = now - steps
     ahead = model.roll_out(model.encode(images[then - 1:then + 1]), torques.values[then - 1:now])
-    known = film.seen_images(run, 1, model.image_size)
+    known = read_images(run, 1, model.image_size)
     assert len(known) == 60
     nearest = np.argmin(np.linalg.norm(model.encode(known) - ahead[-1], axis=1))
     np.testing.assert_array_equal(clip.expected[now], known[nearest])

@@ -49,6 +49,7 @@ class Controller {
     const std::lock_guard<std::mutex> lock(mutex_);
     id_ = id;
     explorer_.reset();
+    plan_.reset();
   }
 
   void setGoal(const py::object& image) {
@@ -71,6 +72,7 @@ class Controller {
             "image of the next episode");
       }
       decision = explorer_->decide(seen);
+      plan_ = decision.plan;
     }
     return arrayOf(decision.torque);
   }
@@ -84,6 +86,12 @@ class Controller {
   void startSegment() {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (explorer_) explorer_->startSegment();
+  }
+
+  py::object planFeatures() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!plan_ || plan_->status == PlanStatus::kFailed) return py::none();
+    return rowsOf(plan_->features);
   }
 
   py::dict options() const { return dictOf(toYaml(options_)); }
@@ -110,6 +118,7 @@ class Controller {
   std::shared_ptr<MpcPolicy> policy_;  // null: all torques are random
   TrialId id_;
   std::optional<EpsilonGreedy> explorer_;  // of this episode; empty before its first image
+  std::optional<Plan> plan_;               // of the latest image; empty if its torque is random
   std::mutex mutex_;                       // act() lets other Python threads run
 };
 
@@ -139,6 +148,11 @@ PYBIND11_MODULE(_core, module) {
       .def("start_segment", &Controller::startSegment,
            "Tells that an image was lost, so that the next image is not one time step later.\n"
            "Call it before act().")
+      .def_property_readonly(
+          "plan_features", &Controller::planFeatures,
+          "Feature of the latest image, and those that its plan predicts\n"
+          "[horizon + 1, feature_dim]; None if the torque is random or the plan\n"
+          "failed")
       .def_property_readonly("options", &Controller::options,
                              "The block `mpc` of the configuration, as a dictionary");
 }

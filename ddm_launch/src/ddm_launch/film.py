@@ -1,7 +1,6 @@
 # Draws evaluations as an animation of image, prediction and feature space, or as a strip of images.
 # SPDX-License-Identifier: BSD-3-Clause
 import collections
-import glob
 import math
 import os
 import re
@@ -13,9 +12,8 @@ from ddm_launch.command import Failure, number
 from ddm_launch.figure_style import (BLUE, GREY, ORANGE, SCREEN, VERMILLION, Figure, argument, new_figure, save, save_image,
                                      show_image)
 from ddm_launch.plant import draw_evaluation
-from ddm_launch.run_folder import read_setting, read_trials, read_yaml
+from ddm_launch.run_folder import read_images, read_setting, read_trials, read_yaml
 from ddm_model.model import load
-from ddm_model.model_data import ModelDataError, read_bags
 
 SUFFIX = ".webp"
 AHEAD_S = 1.0
@@ -41,16 +39,6 @@ def plane_of(points):
     return lambda features: (np.asarray(features) - mean) @ directions.T
 
 
-def seen_images(run, trial, image_size):
-    """Images of all bags up to a trial  [N x size x size]. Raises Failure if a bag cannot be read."""
-    patterns = [os.path.join(glob.escape(run), "trial_%03d" % number, "**", "trial.bag") for number in range(trial + 1)]
-    bags = [path for pattern in patterns for path in sorted(glob.glob(pattern, recursive=True))]
-    try:
-        return np.concatenate([bag["images"] for bag in read_bags(bags, image_size)])
-    except (ModelDataError, ValueError) as error:
-        raise Failure("the bags of %s cannot be read: %s" % (run, error)) from error
-
-
 def read_clip(evaluation):
     """Reads a folder RUN/evaluation_NNN and predicts its images. Returns a Clip. Raises Failure if the folder has
     another name, or if the model and the plant have different image sizes."""
@@ -68,7 +56,7 @@ def read_clip(evaluation):
     dt = float(read_setting(run, "plant/dt"))
     steps, n = max(1, round(AHEAD_S / dt)), model.options["order"]
     features, paths, expected = model.encode(images), [], [None] * len(images)
-    known = seen_images(run, trial, model.image_size)
+    known = read_images(run, trial, model.image_size)
     known_features = model.encode(known)
     for now in range(len(images)):
         if now < n - 1:

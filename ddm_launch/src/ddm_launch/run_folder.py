@@ -1,5 +1,6 @@
 # Reads run folders, which experiment.launch and run_experiment write, and other CSV and YAML files.
 # SPDX-License-Identifier: BSD-3-Clause
+import glob
 import os
 
 import numpy as np
@@ -7,6 +8,7 @@ import pandas
 import yaml
 
 from ddm_launch.command import Failure
+from ddm_model.model_data import ModelDataError, read_bags
 from ddm_model.plain_file import write_file
 
 LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # CSafeLoader is ten times as fast
@@ -92,6 +94,19 @@ def read_torques(folder):
     path = os.path.join(folder, "torques.csv")
     motors = list(read_table(path))[1:-1]  # between the columns step and exploratory
     return read_table(path, *motors)[motors]
+
+
+def read_images(run, trial, image_size):
+    """Images of all trials up to this one, in the order in which they were recorded  [N x size x size]. Raises Failure if
+    a bag cannot be read."""
+    folders = [os.path.join(run, "trial_%03d" % number) for number in range(trial + 1)]
+    episodes = [sorted(glob.glob(os.path.join(glob.escape(folder), "episode_*"))) for folder in folders]
+    bags = [os.path.join(path, "trial.bag") for first, others in zip(folders, episodes) for path in [first, *others]]
+    try:
+        recorded = read_bags(bags, image_size, data_set=read_yaml(run, "config.yaml").get("data_set"))
+        return np.concatenate([bag["images"] for bag in recorded])
+    except (ModelDataError, ValueError) as error:
+        raise Failure("the bags of %s cannot be read: %s" % (run, error)) from error
 
 
 def is_finished(folder):
