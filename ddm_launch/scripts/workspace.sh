@@ -32,7 +32,7 @@ packages_to_run=(
   pybind11-dev python3-dev
   # libraries
   libopencv-imgproc-dev libopencv-imgcodecs-dev libeigen3-dev libceres-dev libyaml-cpp-dev libbz2-dev
-  libboost-dev libboost-program-options-dev libboost-filesystem-dev libbenchmark-dev
+  libboost-dev libboost-program-options-dev libboost-filesystem-dev
   # plants with a model file: physics, and images without a screen
   libmujoco-dev libegl-dev libegl1 libgl1-mesa-dri libtinyxml2-dev
   # tests

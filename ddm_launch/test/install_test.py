@@ -111,5 +111,5 @@ def test_every_tool_shows_its_help(prefix, tmp_path):
     tools = [os.path.join(prefix, "lib", package, name) for package in PACKAGES
              for name in programs_in(os.path.join(prefix, "lib", package)) if name not in nodes]
     assert len(tools) > 8
-    script = 'for tool; do "$tool" --help | grep -Eq "^(usage: |benchmark \\[)" || { echo "$tool"; exit 1; }; done'
+    script = 'for tool; do "$tool" --help | grep -q "^usage: " || { echo "$tool"; exit 1; }; done'
     run_installed(prefix, str(tmp_path), "bash", "-c", script, "bash", *tools)

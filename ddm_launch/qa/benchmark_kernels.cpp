@@ -1,6 +1,5 @@
 // benchmark_kernels: times the objective on a finished experiment, or round trips of messages.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <benchmark/benchmark.h>
 #include <ddm_bag_io/bag_cache.h>
 #include <ddm_common/image_codec.h>
 #include <ddm_common/tool.h>
@@ -33,6 +32,7 @@ namespace ddm {
 namespace {
 
 constexpr int kProductBlocks[] = {32, 64, 128, 256, 512, 1600};
+constexpr int kNumCalls = 1000;
 constexpr int kImageSize = 51;
 constexpr int kQueue = 1000;
 constexpr double kTimeout = 30.0;  // [s]
@@ -43,23 +43,22 @@ constexpr char kAbout[] =
     "  lockstep         lets the real nodes run a random trial, without recorder\n"
     "  bare_camera      publishes an image as soon as the torque for the previous image arrives\n"
     "  bare_controller  answers each image with a torque\n\n"
-    "usage: rosrun ddm_launch benchmark_kernels RUN_FOLDER [options of Google Benchmark]\n"
+    "usage: rosrun ddm_launch benchmark_kernels RUN_FOLDER\n"
     "       rosrun ddm_launch benchmark_kernels lockstep|bare_camera|bare_controller NUM_FRAMES\n\n"
     "`rosrun ddm_launch qa benchmark` runs both.\n";
 
-/// Registers a benchmark. Each repetition has one call, so that quantiles over repetitions are
-/// those of single calls.
+using Clock = std::chrono::steady_clock;
+using Microseconds = std::chrono::duration<double, std::micro>;
+
+/// Prints median and 99 % quantile of the time of a call [us].
 void measure(const std::string& name, const std::function<void()>& call) {
-  benchmark::RegisterBenchmark(name.c_str(),
-                               [call](benchmark::State& state) {
-                                 for (auto _ : state) call();
-                               })
-      ->Iterations(1)
-      ->Repetitions(1000)
-      ->ReportAggregatesOnly(true)
-      ->ComputeStatistics("p99",
-                          [](const std::vector<double>& times) { return quantile(times, 0.99); })
-      ->Unit(benchmark::kMicrosecond);
+  std::vector<double> times;
+  for (int i = 0; i < kNumCalls; ++i) {
+    const Clock::time_point begin = Clock::now();
+    call();
+    times.push_back(Microseconds(Clock::now() - begin).count());
+  }
+  std::cout << name << " " << quantile(times, 0.5) << " " << quantile(times, 0.99) << "\n";
 }
 
 /// The matrix products W a, delta a^T and W^T delta of each layer of g^-1, g and f, with random
@@ -128,14 +127,11 @@ void timeObjective(const std::string& run) {
   const Eigen::VectorXf theta = model->theta().cast<float>();
   Eigen::VectorXf d_theta;
   const Terms terms = makeSchedule(config.training).terms();
-  measure("objective_gradient",
-          [&] { benchmark::DoNotOptimize(objective.evaluate(theta, &d_theta, terms)); });
+  measure("objective_gradient", [&] { objective.evaluate(theta, &d_theta, terms); });
   for (const int block : kProductBlocks) {
-    const auto products = std::make_shared<MatrixProducts>(networks, objective.numPredictions(),
-                                                           terms.prediction_steps, block);
-    measure("matrix_products/" + std::to_string(block), [products] { products->run(); });
+    MatrixProducts products(networks, objective.numPredictions(), terms.prediction_steps, block);
+    measure("matrix_products/" + std::to_string(block), [&products] { products.run(); });
   }
-  benchmark::RunSpecifiedBenchmarks();
 }
 
 /// Mean time of round trips. Ignores the first kWarmUp round trips, in which connections and caches
@@ -154,12 +150,10 @@ class Stopwatch {
   void print() const {
     const int number = last_.first - first_.first;
     if (number == 0) throw std::runtime_error("no round trip was timed");
-    const std::chrono::duration<double, std::micro> time = last_.second - first_.second;
-    std::cout << time.count() / number << "\n";
+    std::cout << Microseconds(last_.second - first_.second).count() / number << "\n";
   }
 
  private:
-  using Clock = std::chrono::steady_clock;
   static constexpr int kWarmUp = 100;
 
   std::pair<int, Clock::time_point> first_, last_;
@@ -224,7 +218,6 @@ void run(int argc, char** argv) {
   const std::string what = argv[1];
   if (what != "lockstep" && what != "bare_camera" && what != "bare_controller") {
     ros::Time::init();
-    benchmark::Initialize(&argc, argv);
     return timeObjective(what);
   }
   ros::init(argc, argv, what);
