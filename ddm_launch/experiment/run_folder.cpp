@@ -203,6 +203,9 @@ bool RunFolder::isRecorded(const RunId& run) const {
   return !repeatable || fs::exists(folder + "/torques.csv");
 }
 
+/// Makes the folder, writes config.yaml with the version, and deletes an earlier summary. All
+/// functions that write call it. The constructor does not, because a refused command must leave the
+/// folder as it is.
 void RunFolder::begin() {
   if (begun_) return;
   if (lock_ == nullptr) {
@@ -293,6 +296,8 @@ void RunFolder::finishTrial(const TrialRow& row) {
   write(kRows, formatTrialsCsv(rows_));
 }
 
+/// Writes a file, and makes its subfolder if needed.
+/// @param name  path relative to this folder
 void RunFolder::write(const std::string& name, const std::string& content) {
   begin();
   makeFolder(fs::path(name).parent_path().string());
@@ -301,6 +306,7 @@ void RunFolder::write(const std::string& name, const std::string& content) {
 
 void RunFolder::writeSummary(double wall_s) {
   YAML::Node summary(YAML::NodeType::Map);
+  summary["finished"] = true;
   summary["preset"] = configuration_.experiment.preset;
   summary["plant"] = configuration_.experiment.plant;
   summary["seed"] = configuration_.experiment.seed;
@@ -322,15 +328,8 @@ void RunFolder::writeSummary(double wall_s) {
   }
   summary["train_s"] = valueToYaml(train_s);
   summary["wall_s"] = valueToYaml(wall_s);
-  finish(summary);
-}
-
-void RunFolder::finish(const YAML::Node& summary) {
-  YAML::Node all(YAML::NodeType::Map);
-  all["finished"] = true;
-  for (const auto& entry : summary) all[entry.first] = entry.second;
-  all["version"] = codeVersion();
-  write(kSummary, YAML::Dump(all) + "\n");
+  summary["version"] = codeVersion();
+  write(kSummary, YAML::Dump(summary) + "\n");
 }
 
 bool RunFolder::confirmSummary() const {

@@ -69,11 +69,9 @@ class RunFolder {
   /// Path of the model of a training. The file is missing if the method cannot save its model.
   std::string modelPath(int trial) const { return trainingPath(trial) + "/model.ddm"; }
 
-  /// Makes the folder, writes config.yaml with the version, and deletes an earlier summary. All
-  /// functions that write call it. The constructor does not, because a refused command must leave
-  /// the folder as it is.
-  /// @throws std::runtime_error with path and reason, also if another process has begun meanwhile
-  void begin();
+  /// The functions below throw std::runtime_error with path and reason if they cannot write, also if
+  /// another process has begun an experiment in this folder meanwhile.
+
   /// Makes the folder of an episode that will be recorded. Bags of an earlier attempt, complete or
   /// not, are renamed and kept, because they may be the only data of that attempt.
   /// @param kept  (optional) out: the new names are appended
@@ -87,13 +85,7 @@ class RunFolder {
   /// Adds a row to trials.csv. A trial that has a row is never run again.
   void finishTrial(const TrialRow& row);
 
-  /// Writes a file, and makes its subfolder if needed.
-  /// @param name  path relative to this folder
-  /// @throws std::runtime_error with path and reason
-  void write(const std::string& name, const std::string& content);
   void writeSummary(double wall_s);
-  /// Writes summary.yaml, which begins with `finished: true` and ends with the version.
-  void finish(const YAML::Node& summary);
   /// Whether summary.yaml exists and says `finished: true`. If so, sets only the modification time
   /// of the file to now: a caller can then tell that the experiment was already finished.
   bool confirmSummary() const;
@@ -104,7 +96,9 @@ class RunFolder {
   }
   void compareWith(const std::string& file);
   void readRows(const std::string& file);
+  void begin();
   void makeFolder(const std::string& name);
+  void write(const std::string& name, const std::string& content);
 
   Configuration configuration_;
   std::string path_;
