@@ -39,7 +39,7 @@ void write(const sensor_msgs::Image& image, const Decision& decision, BagWriter*
 
 void runClosedLoop(Environment* environment, std::shared_ptr<Policy> policy,
                    const TrialRequest& request, const Configuration& configuration,
-                   const std::function<void(const ClosedLoopFrame&)>& take) {
+                   const std::function<void(const sensor_msgs::Image&, const Decision&)>& take) {
   const TrialId& id = request.id;
   const int image_size = configuration.model.image.size;
   EpsilonGreedy::Options options;
@@ -52,17 +52,17 @@ void runClosedLoop(Environment* environment, std::shared_ptr<Policy> policy,
   explorer.setGoal(
       decodeImage(imageMessage(environment->goalImage(), stampOf(*environment)), image_size));
   const std::string optical_frame = opticalFrame(environment->plant().cameraModel());
-  ClosedLoopFrame frame;
-  for (frame.index = 0; frame.index < request.num_steps; ++frame.index) {
-    if (frame.index > 0) {
+  Decision decision;
+  for (int step = 0; step < request.num_steps; ++step) {
+    if (step > 0) {
       const std::uint64_t steps = environment->numSteps();
-      rendered = environment->stepUntilSeen(frame.decision.torque);
+      rendered = environment->stepUntilSeen(decision.torque);
       // After a lost image, a new segment begins.
       if (environment->numSteps() > steps + 1) explorer.startSegment();
     }
-    frame.image = imageMessage(rendered, stampOf(*environment), optical_frame);
-    frame.decision = explorer.decide(decodeImage(frame.image, image_size));
-    take(frame);
+    const sensor_msgs::Image image = imageMessage(rendered, stampOf(*environment), optical_frame);
+    decision = explorer.decide(decodeImage(image, image_size));
+    take(image, decision);
   }
 }
 
@@ -88,21 +88,19 @@ TrialOutcome InProcessDriver::runTrial(const TrialRequest& request, const PhaseC
     bag = std::make_unique<BagWriter>(request.bag, configuration_.model.data_set);
   }
   TrialOutcome outcome;
-  const auto take = [&](const ClosedLoopFrame& frame) {
-    const Decision& decision = frame.decision;
+  const auto take = [&](const sensor_msgs::Image& image, const Decision& decision) {
     outcome.times.push_back(environment_.time());
     outcome.states.push_back(environment_.plant().state());
     outcome.torques.push_back(decision.torque);
     outcome.exploratory.push_back(decision.exploratory);
     if (decision.goal_distance) outcome.goal_distances.push_back(*decision.goal_distance);
     if (decision.solve_time) outcome.solve_times.push_back(*decision.solve_time);
-    if (bag != nullptr && frame.index == 0) {
-      const ros::Time begin = frame.image.header.stamp;
-      const std::string& frame_id = frame.image.header.frame_id;
-      bag->writeGoal(imageMessage(environment_.goalImage(), begin, frame_id), begin);
+    if (bag != nullptr && outcome.torques.size() == 1) {
+      const ros::Time begin = image.header.stamp;
+      bag->writeGoal(imageMessage(environment_.goalImage(), begin, image.header.frame_id), begin);
     }
-    if (bag != nullptr) write(frame.image, decision, bag.get());
-    progress((frame.index + 1.0) / request.num_steps);
+    if (bag != nullptr) write(image, decision, bag.get());
+    progress(static_cast<double>(outcome.torques.size()) / request.num_steps);
   };
   runClosedLoop(&environment_, method_->policy(), request, configuration_, take);
   if (bag != nullptr) bag->close();

@@ -16,23 +16,16 @@
 
 namespace ddm {
 
-/// One image and the decision that the policy made on it. The environment is in the state that the
-/// image shows.
-struct ClosedLoopFrame {
-  int index = 0;  ///< number of the image in this episode, from 0
-  sensor_msgs::Image image;
-  Decision decision;
-};
-
 /// Runs the closed loop of one episode: the policy decides on each image, and its torque acts until
 /// the next image. If an image is lost, the torque acts for another time step. The goal is that of
 /// the trial.
 /// @param policy  may be null if all torques are random
-/// @param take    called for each image before its torque acts; the last torque never acts
+/// @param take    called for each image and the decision on it, before its torque acts. The
+///                environment is then in the state that the image shows. The last torque never acts
 /// @throws std::invalid_argument if the policy is null but needed
 void runClosedLoop(Environment* environment, std::shared_ptr<Policy> policy,
                    const TrialRequest& request, const Configuration& configuration,
-                   const std::function<void(const ClosedLoopFrame&)>& take);
+                   const std::function<void(const sensor_msgs::Image&, const Decision&)>& take);
 
 /// With the method `ddm`, this driver does the same as the nodes do in lock-step, with the same
 /// code and the same bags. The same configuration and seed therefore give the same torques.

@@ -176,7 +176,8 @@ TEST_F(InProcessDriverTest, ShowsThePolicyTheGoalOfEachTrial) {
   request_.epsilon = 0.0;
   std::set<Image> expected;
   for (request_.id.trial = 0; request_.id.trial < 3; ++request_.id.trial) {
-    runClosedLoop(&environment, onlooker, request_, configuration_, [](const auto&) {});
+    runClosedLoop(&environment, onlooker, request_, configuration_,
+                  [](const auto&, const auto&) {});
     expected.insert(environment.goalImage().bytes);
   }
   EXPECT_EQ(onlooker->goals, expected);
