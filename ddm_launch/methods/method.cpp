@@ -15,7 +15,9 @@ std::vector<MethodKind> methodKinds() {
       {"ddm", "the paper's (default)", no_blocks, makeDdmMethod},
       {"oracle", "plans with the same planner on the true plant and state", no_blocks,
        makeOracleMethod}};
+#ifdef DDM_PILCO
   for (MethodKind& kind : pilcoMethods()) kinds.push_back(std::move(kind));
+#endif
   return kinds;
 }
 

@@ -57,7 +57,7 @@ std::unique_ptr<Method> makeOracleMethod(const Configuration& configuration, con
 std::unique_ptr<PlanCost> makeOracleCost(const Plant& plant, std::unique_ptr<Plant> model,
                                          int horizon, double control_weight);
 
-/// pilco_state, pilco_features and pilco_pca. Empty if the CMake option DDM_PILCO is off.
+/// pilco_state, pilco_features and pilco_pca. Defined if the CMake option DDM_PILCO is on.
 std::vector<MethodKind> pilcoMethods();
 
 /// @throws std::invalid_argument listing all methods, if none has this name
