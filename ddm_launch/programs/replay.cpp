@@ -155,44 +155,35 @@ double rms(const Eigen::MatrixXd& values) {
 }
 
 /// Plays all samples of a bag.
-/// @return proposed torques [N m]  [torque_dim x N]
-Eigen::MatrixXd play(const BagContent& bag, double rate, Replay* replay, Progress* progress) {
+/// @param csv  out: the text of the CSV file
+/// @return     proposed torques [N m]  [torque_dim x N]
+Eigen::MatrixXd play(const BagContent& bag, double rate, Replay* replay, Progress* progress,
+                     std::string* csv) {
   const DataSet& data = bag.data;
   Eigen::MatrixXd proposed(data.torqueDim(), data.numFrames());
+  *csv = csvLine("frame", "segment", "time_s", featureNames(data.torqueDim(), "recorded"),
+                 featureNames(data.torqueDim(), "proposed"));
   const ros::SteadyTime begin = ros::SteadyTime::now();
-  for (const Segment& segment : data.segments()) {
+  for (size_t number = 0; number < data.segments().size(); ++number) {
+    const Segment& segment = data.segments()[number];
     replay->beginSegment(segment.size);
     for (Eigen::Index frame = segment.begin; frame < segment.begin + segment.size; ++frame) {
       const double time = bag.times[static_cast<size_t>(frame)];
       if (rate > 0.0) ros::SteadyTime::sleepUntil(begin + ros::WallDuration(time / rate));
-      const Eigen::VectorXd torque =
-          replay->propose(data.image(frame), data.imageSize(), data.torques().col(frame));
+      const Eigen::VectorXd recorded = data.torques().col(frame);
+      const Eigen::VectorXd torque = replay->propose(data.image(frame), data.imageSize(), recorded);
       if (torque.size() != proposed.rows()) {
         throw std::runtime_error("the model has " + std::to_string(torque.size()) +
                                  " torque(s), the bag " + std::to_string(proposed.rows()) +
                                  ": they are of different robots");
       }
       proposed.col(frame) = torque;
+      *csv += csvLine(frame, number, time, recorded, torque);
       progress->update(static_cast<double>(frame + 1) / static_cast<double>(data.numFrames()));
     }
     replay->endSegment();
   }
   return proposed;
-}
-
-void writeCsv(const BagContent& bag, const Eigen::MatrixXd& proposed, const std::string& path) {
-  const DataSet& data = bag.data;
-  std::string text =
-      csvLine("frame", "segment", "time_s", featureNames(data.torqueDim(), "recorded"),
-              featureNames(data.torqueDim(), "proposed"));
-  for (size_t p = 0; p < data.segments().size(); ++p) {
-    const Segment& segment = data.segments()[p];
-    for (Eigen::Index frame = segment.begin; frame < segment.begin + segment.size; ++frame) {
-      text += csvLine(frame, p, bag.times[static_cast<size_t>(frame)], data.torques().col(frame),
-                      proposed.col(frame));
-    }
-  }
-  writeFileAtomically(path, text);
 }
 
 void run(const ros::NodeHandle& nh, ParamReader* params) {
@@ -207,14 +198,15 @@ void run(const ros::NodeHandle& nh, ParamReader* params) {
   Replay replay(nh, options, *model);
   Progress progress;
   progress.beginPhase(0, "replay");
-  const Eigen::MatrixXd proposed = play(bag, options.rate, &replay, &progress);
+  std::string csv;
+  const Eigen::MatrixXd proposed = play(bag, options.rate, &replay, &progress, &csv);
   std::ostringstream summary;
   summary << bag.data.numFrames() << " frames replayed, root mean square torque [N m]: recorded "
           << rms(bag.data.torques()) << ", proposed " << rms(proposed) << ", difference "
           << rms(proposed - bag.data.torques());
   progress.note(summary.str());
   if (options.out.empty()) return;
-  writeCsv(bag, proposed, options.out);
+  writeFileAtomically(options.out, csv);
   progress.note("both torques: " + options.out);
 }
 
