@@ -284,14 +284,4 @@ po::options_description configurationOptions(const std::string& about, Arguments
   return options;
 }
 
-po::options_description commonOptions(const std::string& about, Arguments* arguments) {
-  po::options_description options = configurationOptions(about, arguments);
-  auto add = options.add_options();
-  add("seed", given<int>("experiment/seed", arguments),
-      "fixes every random draw; otherwise that of the files, or 0");
-  add("out", given<std::string>("experiment/runs", arguments)->required(),
-      "folder for the results");
-  return options;
-}
-
 }  // namespace ddm

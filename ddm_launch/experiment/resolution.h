@@ -74,8 +74,4 @@ boost::program_options::typed_value<Value>* given(const std::string& key, Argume
 boost::program_options::options_description configurationOptions(const std::string& about,
                                                                  Arguments* arguments);
 
-/// The options of configurationOptions(), --seed and --out.
-boost::program_options::options_description commonOptions(const std::string& about,
-                                                          Arguments* arguments);
-
 }  // namespace ddm

@@ -64,10 +64,8 @@ class RunFolder {
   std::vector<std::string> bagsUpTo(int trial) const;
   /// Whether this episode has been recorded completely and need not be repeated.
   bool isRecorded(const RunId& run) const;
-  /// Folder for the files of a training.
+  /// Folder for the files of a training, such as model.ddm.
   std::string trainingPath(int trial) const { return at(runName({trial})); }
-  /// Path of the model of a training. The file is missing if the method cannot save its model.
-  std::string modelPath(int trial) const { return trainingPath(trial) + "/model.ddm"; }
 
   /// The functions below throw std::runtime_error with path and reason if they cannot write, also if
   /// another process has begun an experiment in this folder meanwhile.

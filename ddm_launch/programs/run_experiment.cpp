@@ -26,10 +26,14 @@ constexpr char kAbout[] =
 /// @return false if --help was given and has been printed
 bool configure(int argc, char** argv, ddm::Configuration* configuration) {
   ddm::Arguments arguments;
-  po::options_description options = ddm::commonOptions(kAbout, &arguments);
+  po::options_description options = ddm::configurationOptions(kAbout, &arguments);
   std::string methods = "who learns and acts:";
   for (const auto& kind : ddm::methodKinds()) methods += "\n" + kind.name + ": " + kind.about;
   auto add = options.add_options();
+  add("seed", ddm::given<int>("experiment/seed", &arguments),
+      "fixes every random draw; otherwise that of the files, or 0");
+  add("out", ddm::given<std::string>("experiment/runs", &arguments)->required(),
+      "folder for the results");
   add("trials", ddm::given<int>("experiment/trials", &arguments),
       "epsilon-greedy trials after the random one; otherwise as in the files, or 15");
   add("method", ddm::given<std::string>("experiment/method", &arguments), methods.c_str());

@@ -120,7 +120,7 @@ void timeObjective(const std::string& run) {
   const int last = folder.rows().back().trial;
   const ModelConfig& config = configuration.model;
   const DataSet data = BagCache(config.image.size, config.data_set).read(folder.bagsUpTo(last));
-  const std::shared_ptr<const Ddm> model = readModel(folder.modelPath(last));
+  const std::shared_ptr<const Ddm> model = readModel(folder.trainingPath(last) + "/model.ddm");
 
   const Networks<float> networks(model->options(), data.torqueDim());
   JointObjective<float> objective(networks, makeTrainingData(data, model->pca()));
