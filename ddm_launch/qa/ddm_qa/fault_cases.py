@@ -87,9 +87,6 @@ CASES = [
            ("mute clock", RECOVERS)),  # no node waits for simulated time to pass
 
     *real_time(EXPLORING), *real_time(EVALUATION),
-    *cases(["every run" + REAL_TIME],  # plans that would take minutes
-           ("long plans", "ended, named", "no plan for step 1", "mpc/time_budget"),
-           ("long plans with a budget", "finished, in time")),
 
     # A wrong clock, old joint states, another camera, a dead controller, or a joint beyond its limits must lead to zero
     # torque within two time steps and 50 ms.
