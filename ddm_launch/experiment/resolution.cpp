@@ -3,6 +3,7 @@
 #include "resolution.h"
 
 #include <ddm_common/config_blocks.h>
+#include <ddm_common/option_checks.h>
 #include <ddm_plant_plugin/plant_config.h>
 #include <ddm_robot/robot_options.h>
 #include <ddm_sim/plant.h>
@@ -172,11 +173,19 @@ void shareMotors(const Given& given, YAML::Node* blocks) {
 
 /// Derives the time step of the controller from robot or plant. In real time, a plan must be ready
 /// before the next image, so that mpc/time_budget becomes half a time step.
+/// @throws std::invalid_argument if the images of a robot are too far apart for mpc_node, which
+///         aborts a trial if no image comes within controller/timeout
 void shareTimeStep(const Given& given, YAML::Node* blocks) {
   const bool robot = (*blocks)["robot"].IsDefined();
   auto dt = valueAt<double>(*blocks, robot ? "robot" : "plant", "dt");
   if (robot && !dt) dt = RobotOptions().dt;  // robot.yaml may be read on the robot's computer only
   if (!dt) return;
+  const auto timeout = valueAt<double>(*blocks, "controller", "timeout");
+  if (robot && timeout && *timeout < 2.0 * *dt) {
+    throw std::invalid_argument(textOf("controller/timeout must be at least 2 robot/dt, ",
+                                       2.0 * *dt, " s, got ", *timeout,
+                                       ": raise it, or the next image would count as missing"));
+  }
   follow("controller", "dt", valueToYaml(*dt), blocks);
   const bool lockstep = valueAt<bool>(*blocks, "sim", "lockstep").value_or(true);
   if (given("mpc", "time_budget") || (!robot && lockstep)) return;

@@ -54,7 +54,8 @@ struct ResolvedConfiguration {
 ///  * mpc/time_budget is half a time step if the plant runs in real time.
 /// @throws std::invalid_argument if there is no such preset, plant or named configuration (the
 ///         message lists those that exist), if a saved configuration has another preset, plant or
-///         method, or if controller/torque_dim is not the number of motors
+///         method, if controller/torque_dim is not the number of motors, or if
+///         controller/timeout is too short for robot/dt
 /// @throws std::runtime_error or std::invalid_argument if a file cannot be read, see readBlocks()
 ResolvedConfiguration resolve(const Arguments& arguments);
 

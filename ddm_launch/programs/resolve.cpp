@@ -119,23 +119,6 @@ void makeAbsolute(YAML::Node path) {
   path = fs::absolute(path.Scalar()).lexically_normal().string();
 }
 
-/// Checks controller/timeout against the time step of a robot. mpc_node aborts a trial if no image
-/// comes within controller/timeout, and the images of a robot are robot/dt apart. The check is not
-/// in requireConsistent(), because only nodes read the block `controller` and no saved
-/// configuration has it. mpc_node itself refuses a timeout that is not a number.
-/// @throws std::invalid_argument if the timeout is shorter than two time steps
-void requirePatience(const RobotOptions& robot, const YAML::Node& blocks) {
-  double timeout = 0.0;
-  if (!hasKey(blocks, "controller", "timeout") ||
-      !parseValue(blocks["controller"]["timeout"], &timeout) || timeout >= 2.0 * robot.dt) {
-    return;
-  }
-  std::ostringstream problem;
-  problem << "controller/timeout must be at least 2 robot/dt, " << 2.0 * robot.dt << " s, got "
-          << timeout << ": raise it, or the next image would count as missing";
-  throw std::invalid_argument(problem.str());
-}
-
 void run(const Request& request) {
   if (!request.path.empty()) {
     std::cout << fs::absolute(request.path).lexically_normal().string();
@@ -147,7 +130,6 @@ void run(const Request& request) {
   const YAML::Node names = request.arguments.values["experiment"];
   const bool experiment = names.IsDefined() && names["runs"].IsDefined();
   if (experiment) requireConsistent(all);
-  if (all.robot) requirePatience(*all.robot, resolved.blocks);
 
   YAML::Node& blocks = resolved.blocks;
   makeAbsolute(blocks["experiment"]["runs"]);
