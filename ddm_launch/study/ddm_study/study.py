@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 
-from ddm_launch.command import Failure, number, package_path, program_parser, run_program
+from ddm_launch.command import number, package_path, program_parser, run_program
 from ddm_launch.figure import add_figures
 from ddm_study import collect, compare, curves, diagnosis, features, pages
 
@@ -21,15 +21,13 @@ FIGURES = {"angle_trajectories": curves.TRAJECTORIES, "feature_plane": features.
 
 
 def reproduce(options):
-    """Replaces this process by make with the rules of the study. Raises Failure if make is missing."""
+    """Replaces this process by make with the rules of the study, so that signals reach make. Raises OSError if make is
+    missing."""
     os.makedirs(options.out, exist_ok=True)
     words = ["make", "-f", package_path("study", "Makefile"), "-C", options.out, *options.goals]
     words += ["JOBS=%d" % options.jobs] if options.jobs else []
     words += ["--dry-run"] if options.dry_run else []
-    try:
-        os.execvp(words[0], words)  # make replaces this process, so that signals reach make
-    except FileNotFoundError:
-        raise Failure("the program make is missing: install the package make") from None
+    os.execvp(words[0], words)
 
 
 def add_commands(parser):
