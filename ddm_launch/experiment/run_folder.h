@@ -30,19 +30,10 @@ struct RunId {
 /// "trial_007/episode_001" for the second episode.
 std::string runName(const RunId& run);
 
-/// Reads and writes the folder of one experiment. A folder holds one configuration and is used by
-/// one process at a time. A file appears under its name only when it is complete.
-///
-///   config.yaml                          effective configuration and version at the beginning
-///   trials.csv                           one row per finished trial
-///   .trials.crc32                        checksums of trials.csv
-///   trial_NNN/{trial.bag,torques.csv,trajectory.csv} and the files of the training, e.g. model.ddm
-///   trial_NNN/training.yaml              results of the training; written last
-///   evaluation_NNN/{torques.csv,trajectory.csv}, and trial.bag with evaluation/record
-///   evaluation_NNN/goal_distance.csv     replaces trajectory.csv if there is no ground truth
-///   trial_NNN/episode_EEE/               the same files for the second and later episodes
-///   trial_NNN/trial.K.bag[.active]       recording of the K-th unfinished attempt
-///   summary.yaml                         summary of the experiment; written last
+/// Reads and writes the folder of one experiment, whose files doc/reference/run_folder.md lists. A
+/// folder holds one configuration and is used by one process at a time. A file appears under its
+/// name only when it is complete. In a trial, torques.csv is written after the bag and training.yaml
+/// after all other files of the training, so that they tell how far an earlier call came.
 class RunFolder {
  public:
   /// Reads the folder, which need not exist, and changes nothing. An existing folder is locked with
