@@ -270,12 +270,18 @@ ddm_msgs::RunTrialResult RosDriver::runPolicy(const TrialRequest& request,
   goal.model_id = request.epsilon < 1.0 ? model_id_ : "";
   goal.start = begin.start;
   goal.goal = begin.goal;
-  return execute(
+  const ddm_msgs::RunTrialResult result = execute(
       &trial_client_, nh_.resolveName(topics::kRunTrial), goal,
       [num_steps = request.num_steps](const ddm_msgs::RunTrialFeedback& feedback) {
         return static_cast<double>(feedback.step) / num_steps;
       },
       progress);
+  if (result.num_steps != goal.num_steps || result.exploratory.size() != result.num_steps ||
+      result.stamp.size() != result.num_steps || result.torque.size() % result.num_steps != 0) {
+    throw std::runtime_error("action " + nh_.resolveName(topics::kRunTrial) +
+                             ": its result is not that of the trial");
+  }
+  return result;
 }
 
 /// Stores the true state at each image that was answered. In real time, there are more states than
