@@ -2,28 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_model/data_set.h"
 
-#include <stdexcept>
-#include <string>
-
 namespace ddm {
 
 DataSet::DataSet(int image_size, int torque_dim)
     : image_size_(image_size), torque_dim_(torque_dim) {
-  if (image_size < 1 || torque_dim < 1) {
-    throw std::invalid_argument("data set: image size and torque dimension must be >= 1");
-  }
+  eigen_assert(image_size >= 1 && torque_dim >= 1);
 }
 
 void DataSet::append(const Image& image, const Eigen::VectorXd& torque, bool new_segment) {
-  if (static_cast<Eigen::Index>(image.size()) != numPixels()) {
-    throw std::invalid_argument("data set: an image must have " + std::to_string(numPixels()) +
-                                " pixels, got " + std::to_string(image.size()));
-  }
-  if (torque.size() != torque_dim_) {
-    throw std::invalid_argument("data set: a torque must have " + std::to_string(torque_dim_) +
-                                " value(s), got " + std::to_string(torque.size()));
-  }
-  if (!torque.allFinite()) throw std::invalid_argument("data set: a torque must be finite");
+  eigen_assert(static_cast<Eigen::Index>(image.size()) == numPixels());
+  eigen_assert(torque.size() == torque_dim_ && torque.allFinite());
   if (new_segment || segments_.empty()) segments_.push_back({num_frames_, 0});
   images_.push_back(std::make_shared<const Image>(image));
   torques_.insert(torques_.end(), torque.data(), torque.data() + torque.size());
@@ -32,9 +20,7 @@ void DataSet::append(const Image& image, const Eigen::VectorXd& torque, bool new
 }
 
 void DataSet::append(const DataSet& other) {
-  if (other.image_size_ != image_size_ || other.torque_dim_ != torque_dim_) {
-    throw std::invalid_argument("data set: image size or torque dimension differ");
-  }
+  eigen_assert(other.image_size_ == image_size_ && other.torque_dim_ == torque_dim_);
   for (const Segment& segment : other.segments_) {
     segments_.push_back({segment.begin + num_frames_, segment.size});
   }
@@ -45,10 +31,7 @@ void DataSet::append(const DataSet& other) {
 }
 
 void DataSet::setGoal(const Image& image) {
-  if (static_cast<Eigen::Index>(image.size()) != numPixels()) {
-    throw std::invalid_argument("goal image: must have " + std::to_string(numPixels()) +
-                                " pixels, got " + std::to_string(image.size()));
-  }
+  eigen_assert(static_cast<Eigen::Index>(image.size()) == numPixels());
   goal_ = image;
 }
 

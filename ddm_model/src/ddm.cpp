@@ -28,11 +28,6 @@ void requireFinite(const std::string& name, const Values& values) {
   }
 }
 
-/// @return "[rows x columns]" for error messages
-std::string shape(Eigen::Index rows, Eigen::Index cols) {
-  return "[" + std::to_string(rows) + " x " + std::to_string(cols) + "]";
-}
-
 /// @return number of centres of the Gaussian process in f with so many parameters of the model; 0:
 ///         f contains a network
 Eigen::Index numCentres(const ModelOptions& options, int torque_dim, Eigen::Index num_params) {
@@ -104,12 +99,7 @@ Image Ddm::decode(const Eigen::VectorXd& z) const {
 }
 
 Eigen::VectorXd Ddm::predict(const History& x, const Eigen::VectorXd& u) const {
-  if (x.empty()) throw std::invalid_argument("prediction: the history is empty: observe() first");
-  if (u.size() != x.torques().rows()) {
-    throw std::invalid_argument("prediction: a torque must have " +
-                                std::to_string(x.torques().rows()) + " value(s), got " +
-                                std::to_string(u.size()));
-  }
+  eigen_assert(!x.empty() && u.size() == x.torques().rows());
   const Eigen::Index n = x.features().cols();
   Eigen::MatrixXd torques(u.size(), n);
   torques.leftCols(n - 1) = x.torques().rowwise().reverse();
@@ -121,19 +111,10 @@ Eigen::MatrixXd Ddm::rollOut(const Eigen::MatrixXd& Z,
                              const Eigen::Ref<const Eigen::MatrixXd>& torques, Eigen::Index frame,
                              int num_steps) const {
   const PredictionModel<double>& f = predictionModel();
-  const Eigen::Index n = f.order();
-  if (Z.rows() != f.featureDim() || torques.rows() != f.torqueDim() || torques.cols() != Z.cols()) {
-    throw std::invalid_argument(
-        "roll-out: the model takes features " + shape(f.featureDim(), Z.cols()) + " and torques " +
-        shape(f.torqueDim(), Z.cols()) + ", got " + shape(Z.rows(), Z.cols()) + " and " +
-        shape(torques.rows(), torques.cols()));
-  }
-  if (num_steps < 0 || frame < n - 1 || frame >= Z.cols() || frame + num_steps > Z.cols()) {
-    throw std::invalid_argument("roll-out: frame " + std::to_string(frame) + " needs " +
-                                std::to_string(n - 1) + " frames before it and torques for " +
-                                std::to_string(num_steps) + " steps, there are " +
-                                std::to_string(Z.cols()) + " frames");
-  }
+  eigen_assert(Z.rows() == f.featureDim() && torques.rows() == f.torqueDim() &&
+               torques.cols() == Z.cols());
+  eigen_assert(num_steps >= 0 && frame >= f.order() - 1 && frame < Z.cols() &&
+               frame + num_steps <= Z.cols());
   const Eigen::Index target = frame + 1;
   RollOut<double> predictions(f);
   predictions.forward(thetaP(), Z, torques, RollOut<double>::Targets(&target, 1), num_steps);

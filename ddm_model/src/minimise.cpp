@@ -10,7 +10,6 @@
 #include <cmath>
 #include <optional>
 #include <sstream>
-#include <stdexcept>
 #include <utility>
 
 namespace ddm {
@@ -159,13 +158,7 @@ ceres::GradientProblemSolver::Options solverOptions(const MinimiseOptions& optio
 
 SolverResult minimise(const DifferentiableFunction& f, const Eigen::VectorXd& start,
                       const MinimiseOptions& options) {
-  if (start.size() == 0 || !start.allFinite()) {
-    throw std::invalid_argument("the start of a minimisation must be finite numbers, got " +
-                                (start.size() == 0 ? std::string("none") : "others"));
-  }
-  if (options.max_iterations < 0 || options.max_evaluations < 0 || options.lbfgs_rank < 0) {
-    throw std::invalid_argument("the limits of a minimisation must be >= 0");
-  }
+  eigen_assert(start.size() > 0);
   Search search(f, start, options);
   const ceres::GradientProblem problem(new CeresFunction(&search));  // owns the function
   ceres::GradientProblemSolver::Summary summary;

@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_model/mlp.h"
 
-#include <stdexcept>
-#include <string>
+#include <utility>
 
 namespace ddm {
 namespace {
@@ -19,12 +18,7 @@ void reserve(Eigen::Index rows, Eigen::Index n, Matrix* matrix) {
 template <class Scalar>
 Mlp<Scalar>::Mlp(std::vector<int> widths, Output output)
     : widths_(std::move(widths)), output_(output) {
-  if (widths_.size() < 2) throw std::invalid_argument("Mlp needs an input and an output width");
-  for (int width : widths_) {
-    if (width < 1) {
-      throw std::invalid_argument("Mlp: a width must be >= 1, got " + std::to_string(width));
-    }
-  }
+  eigen_assert(widths_.size() >= 2);
   for (size_t l = 1; l < widths_.size(); ++l) {
     offsets_.push_back(num_params_);
     num_params_ += static_cast<Eigen::Index>(widths_[l]) * (widths_[l - 1] + 1);

@@ -20,22 +20,16 @@ JointObjective<Scalar>::JointObjective(const Networks<Scalar>& networks, Trainin
     : networks_(networks), data_(std::move(data)) {
   const PredictionModel<Scalar>& f = networks_.prediction_model;
   const Eigen::Index num_images = data_.scores.cols();
-  if (data_.scores.rows() != networks_.encoder().inputDim() ||
-      data_.torques.rows() != f.torqueDim() || data_.torques.cols() > num_images) {
-    throw std::invalid_argument("objective: scores or torques do not fit the networks");
-  }
+  eigen_assert(data_.scores.rows() == networks_.encoder().inputDim() &&
+               data_.torques.rows() == f.torqueDim() && data_.torques.cols() <= num_images);
   const Eigen::Index num_parts = std::max<Eigen::Index>(1, (num_images + kMaxPart - 1) / kMaxPart);
   const Eigen::Index part_size = (num_images + num_parts - 1) / num_parts;
   for (Eigen::Index begin = 0; begin < num_images; begin += part_size) {
     const Eigen::Index first = std::max<Eigen::Index>(begin - f.order(), 0);
     parts_.push_back({first, begin, std::min(begin + part_size, num_images), {}, {}});
   }
-  std::sort(data_.segments.begin(), data_.segments.end(),
-            [](const Segment& a, const Segment& b) { return a.begin < b.begin; });
   for (const Segment& segment : data_.segments) {
-    if (segment.begin < 0 || segment.begin + segment.size > data_.torques.cols()) {
-      throw std::invalid_argument("objective: a segment reaches beyond the frames");
-    }
+    eigen_assert(segment.begin >= 0 && segment.begin + segment.size <= data_.torques.cols());
     for (Eigen::Index i = f.order(); i < segment.size; ++i) {
       Part& part = parts_[(segment.begin + i) / part_size];
       part.targets.push_back(segment.begin + i - part.first);

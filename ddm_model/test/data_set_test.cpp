@@ -1,18 +1,11 @@
-// Tests of the data set: segments, seams, refusals.
+// Tests of the data set: segments, seams, goal images.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_model/data_set.h"
 
 #include <gtest/gtest.h>
 
-#include <limits>
-#include <stdexcept>
-
-#include "ddm_msgs/testing/expect_error.h"
-
 namespace ddm {
 namespace {
-
-using testing::throwsNaming;
 
 Eigen::VectorXd torque(double value) { return Eigen::VectorXd::Constant(1, value); }
 
@@ -63,23 +56,6 @@ TEST(DataSet, TheLastGoalThatIsAppendedCounts) {
   EXPECT_EQ(data.goal(), Image(4, 7));
   data.append(numbered(0, 1));
   EXPECT_EQ(data.goal(), Image(4, 7));
-}
-
-TEST(DataSet, RefusesFramesAndDataSetsThatDoNotFit) {
-  DataSet data(2, 1);
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>([&] { data.append(Image(5), torque(0), true); },
-                                                  {"4 pixels", "got 5"}));
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-      [&] { data.append(Image(4), Eigen::Vector2d(0, 0), true); }, {"1 value", "got 2"}));
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-      [&] { data.append(Image(4), torque(std::numeric_limits<double>::quiet_NaN()), true); },
-      {"finite"}));
-  EXPECT_TRUE(
-      throwsNaming<std::invalid_argument>([&] { data.setGoal(Image(3)); }, {"4 pixels", "got 3"}));
-  EXPECT_EQ(data.numFrames(), 0);  // nothing of a refused frame is kept
-  EXPECT_TRUE(data.segments().empty());
-  EXPECT_THROW(data.append(DataSet(3, 1)), std::invalid_argument);
-  EXPECT_THROW(data.append(DataSet(2, 2)), std::invalid_argument);
 }
 
 }  // namespace

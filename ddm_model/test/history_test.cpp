@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <stdexcept>
 #include <vector>
 
 #include "ddm_model/testing/random_matrix.h"
@@ -34,12 +33,6 @@ TEST(History, KeepsTheNewestFirstAndForgetsTheOldest) {
   }
   EXPECT_EQ(x.features(), Eigen::RowVector3d(4.0, 3.0, 2.0));  // z_t, z_{t-1}, z_{t-2}
   EXPECT_EQ(x.torques(), Eigen::RowVector2d(13.0, 12.0));      // u_{t-1}, u_{t-2}
-}
-
-TEST(History, RefusesSizesBelowOne) {
-  EXPECT_THROW(History(0, 1, 1), std::invalid_argument);
-  EXPECT_THROW(History(1, 0, 1), std::invalid_argument);
-  EXPECT_THROW(History(1, 1, -3), std::invalid_argument);
 }
 
 Eigen::MatrixXf columns(const Eigen::MatrixXf& Z, const std::vector<Eigen::Index>& chosen) {

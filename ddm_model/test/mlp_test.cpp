@@ -4,12 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include <stdexcept>
-
 #include "ddm_model/networks.h"
 #include "ddm_model/testing/gradient_check.h"
 #include "ddm_model/testing/random_matrix.h"
-#include "ddm_msgs/testing/expect_error.h"
 
 namespace ddm {
 namespace {
@@ -93,16 +90,6 @@ TEST(Mlp, RandomWeightsHaveTheSpreadOfTheirFanInAndNoBias) {
   EXPECT_NEAR(spread, 1.0 / 20.0, 0.001);
   EXPECT_EQ(net.biases(theta.data(), 0).norm(), 0.0);
   EXPECT_EQ(net.biases(theta.data(), 1).norm(), 0.0);
-}
-
-TEST(Mlp, RefusesShapesThatAreNoNetwork) {
-  EXPECT_TRUE(testing::throwsNaming<std::invalid_argument>([] { Net({4}, Net::Output::kLinear); },
-                                                           {"input", "output"}));
-  EXPECT_TRUE(testing::throwsNaming<std::invalid_argument>(
-      [] {
-        Net({4, 0, 2}, Net::Output::kLinear);
-      },
-      {">= 1", "got 0"}));
 }
 
 TEST(PredictionModel, TakesItsRegressorNewestFirstWithEachTorqueAfterItsFeature) {

@@ -223,17 +223,5 @@ TEST(JointObjective, NamesWhatPredictionsNeedWhereNoSegmentIsLongEnough) {
       {"model/order", "= 2 frames"}));
 }
 
-TEST(JointObjective, RefusesDataOfAnotherShape) {
-  const Networks<double> nets(tinyOptions(), 1);
-  const auto refuses = [&nets](const TrainingData<double>& data) {
-    return testing::throwsNaming<std::invalid_argument>([&] { JointObjective<double>(nets, data); },
-                                                        {"objective"});
-  };
-  EXPECT_TRUE(refuses(randomData(5, 1, 10, true, {{0, 10}})));  // scores
-  EXPECT_TRUE(refuses(randomData(4, 2, 10, true, {{0, 10}})));  // torques
-  EXPECT_TRUE(refuses(randomData(4, 1, 10, true, {{0, 11}})));  // the goal is no frame
-  EXPECT_TRUE(refuses(randomData(4, 1, 10, true, {{-1, 5}})));
-}
-
 }  // namespace
 }  // namespace ddm

@@ -27,24 +27,21 @@ class DataSet {
  public:
   /// @param image_size  width and height of the images [pixels]
   /// @param torque_dim  number of motors
-  /// @throws std::invalid_argument if a parameter is < 1
   DataSet(int image_size, int torque_dim);
 
-  /// Appends a sample.
+  /// Appends a sample. Images and torques come from code that has checked them: wrong sizes are
+  /// errors of the programmer, which eigen_assert reports in debug builds only.
   /// @param image       image y_t                                                            [D]
   /// @param torque     u_t [N m]                                                    [torque_dim]
   /// @param new_segment  true if the previous sample is not one sampling time earlier: at the first
   ///                   sample of a trial and after a gap. No training pair spans such a boundary
-  /// @throws std::invalid_argument for a wrong size or a torque that is not finite
   void append(const Image& image, const Eigen::VectorXd& torque, bool new_segment);
 
   /// Appends all samples of another data set. No training pair spans the boundary between the two
   /// data sets. If the other data set has a goal image, it replaces the goal image of this one.
-  /// @throws std::invalid_argument if image size or torque dimension differ
   void append(const DataSet& other);
 
   /// Sets the goal image y_ref (paper, Sec. 3.1), which is also training data of the auto-encoder.
-  /// @throws std::invalid_argument for a wrong size
   void setGoal(const Image& image);
   bool hasGoal() const { return !goal_.empty(); }
   const Image& goal() const { return goal_; }

@@ -61,7 +61,7 @@ class Ddm {
   /// @param x  controller state x_t (paper, eq. 8), not empty
   /// @param u  u_t [N m]                                                 [torque_dim]
   /// @return   z_{t+1}                                                   [feature_dim]
-  /// @throws std::invalid_argument if x is empty, or if x or u have a wrong size
+  /// @pre as above (checked by eigen_assert, i.e. in debug builds only)
   Eigen::VectorXd predict(const History& x, const Eigen::VectorXd& u) const;
 
   /// Predicts a rollout z_t, z_{t+1}, ..., z_{t+num_steps} (paper, eq. 2 step by step, and Sec.
@@ -70,7 +70,7 @@ class Ddm {
   /// @param torques  torques of all samples [N m]                          [torque_dim x N]
   /// @param frame    t, with n - 1 <= t <= N - num_steps. The samples used must have no gap
   /// @return         z_t, then the predicted features       [feature_dim x (num_steps + 1)]
-  /// @throws std::invalid_argument if a size or the index t does not fit
+  /// @pre as above (checked by eigen_assert, i.e. in debug builds only)
   Eigen::MatrixXd rollOut(const Eigen::MatrixXd& Z,
                           const Eigen::Ref<const Eigen::MatrixXd>& torques, Eigen::Index frame,
                           int num_steps) const;

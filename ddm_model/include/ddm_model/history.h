@@ -3,7 +3,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <stdexcept>
 #include <vector>
 
 #include "ddm_model/data_set.h"
@@ -18,14 +17,9 @@ class History {
   /// @param order        n
   /// @param feature_dim  dim z
   /// @param torque_dim   number of motors
-  /// @throws std::invalid_argument if a parameter is < 1
-  History(int order, int feature_dim, int torque_dim) {
-    if (order < 1 || feature_dim < 1 || torque_dim < 1) {
-      throw std::invalid_argument("history: order and dimensions must be >= 1");
-    }
-    features_.setZero(feature_dim, order);
-    torques_.setZero(torque_dim, order - 1);
-  }
+  History(int order, int feature_dim, int torque_dim)
+      : features_(Eigen::MatrixXd::Zero(feature_dim, order)),
+        torques_(Eigen::MatrixXd::Zero(torque_dim, order - 1)) {}
 
   /// Clears the state: the next feature is treated as the first of a trial.
   void clear() {

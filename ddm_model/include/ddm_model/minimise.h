@@ -22,7 +22,7 @@ enum class TerminationReason {
   kEvaluationLimit,  ///< max_evaluations is reached
   kStopped,          ///< `stop` or `on_iteration` ended the search
   kNoDecrease,       ///< no step lowers the cost, although the gradient does not vanish
-  kStartFailed,      ///< the function is undefined at the initial point
+  kStartFailed,      ///< the initial point is not finite, or the function is undefined there
 };
 
 /// Result of a minimisation: the best evaluated point, and why the search ended.
@@ -60,9 +60,8 @@ struct MinimiseOptions {
 /// Minimises f from an initial point (BFGS: paper, Secs. 2.3 and 3.1). The line search shortens a
 /// step that ends where f is undefined. The result is never worse than the initial point. The
 /// reason is determined here, because the solver reports success even if no step lowered the cost.
-/// @param start  initial point  [n]
-/// @throws std::invalid_argument if the initial point is empty or not finite, or if a limit is
-///         negative; also every exception of f, stop and on_iteration
+/// @param start  initial point, not empty  [n]
+/// @throws every exception of f, stop and on_iteration
 SolverResult minimise(const DifferentiableFunction& f, const Eigen::VectorXd& start,
                       const MinimiseOptions& options);
 

@@ -99,9 +99,8 @@ class Mlp {
     typename Matrix::ColsBlockXpr output() { return activations.back().leftCols(num_samples); }
   };
 
-  /// @param widths  layer widths, input first                                             [L + 1]
+  /// @param widths  layer widths, input first, each at least 1                            [L + 1]
   /// @param output  activation of the last layer
-  /// @throws std::invalid_argument if there are fewer than two widths or one is < 1
   Mlp(std::vector<int> widths, Output output);
 
   const std::vector<int>& widths() const { return widths_; }

@@ -34,8 +34,7 @@ class PredictionModel {
   using Matrix = typename Mlp<Scalar>::Matrix;
 
   /// @param num_centres  centres of the Gaussian process that f contains; 0: f contains a network
-  /// @throws std::invalid_argument if a width is < 1, or if max_torque has a wrong number of
-  ///         entries
+  /// @throws std::invalid_argument if max_torque has a wrong number of entries
   PredictionModel(const ModelOptions& options, int torque_dim, Eigen::Index num_centres = 0)
       : options_(options),
         torque_dim_(torque_dim),
@@ -134,8 +133,7 @@ struct Networks {
   PredictionModel<Scalar> prediction_model;
 
   /// @param num_centres  of the Gaussian process in f; 0: f is a network
-  /// @throws std::invalid_argument if a width is < 1, or if max_torque has a wrong number of
-  ///         entries
+  /// @throws std::invalid_argument if max_torque has a wrong number of entries
   Networks(const ModelOptions& options, int torque_dim, Eigen::Index num_centres = 0)
       : prediction_model(options, torque_dim, num_centres),
         encoder_(layerWidths(options.pca_dim, options.encoder_widths, options.feature_dim),

@@ -71,8 +71,7 @@ class JointObjective {
   };
 
   /// @param networks  shapes of the networks; must outlive the objective
-  /// @param data      scores and torques
-  /// @throws std::invalid_argument if scores, torques or segments do not fit
+  /// @param data      scores and torques; segments in order of time
   JointObjective(const Networks<Scalar>& networks, TrainingData<Scalar> data);
 
   /// @param theta    parameters                                                              [P]
