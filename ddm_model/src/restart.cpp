@@ -2,18 +2,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "restart.h"
 
+#include <ddm_common/option_checks.h>
+
 #include <algorithm>
 #include <cmath>
 #include <exception>
 #include <memory>
-#include <sstream>
 
 namespace ddm {
 namespace {
 
 constexpr Eigen::Index kFirstPart = 200;  // samples of the first part of the data
 constexpr Eigen::Index kPiece = 100;      // samples of a piece of a part
-constexpr Eigen::Index kMinPieces = 4;    // for few samples, so that they come from several places
 constexpr int kWarmUpIterations = 50;     // with k = 1, if k > 1
 
 /// Minimises one stage from the current weights of a restart.
@@ -43,11 +43,10 @@ void minimiseRestart(const RestartProblem& problem, Progress* progress, Restart*
   const Terms terms = problem.schedule.terms();
   const auto lowered = [&](size_t stage, const SolverResult& result) {
     if (result.improved()) return true;
-    std::ostringstream text;
-    text << "training did not lower the objective: stage " << stage + 1 << " of " << stages.size()
-         << " stays at " << result.initial_cost << " (" << result.message
-         << "); check the bags, or leave the block training at its defaults";
-    restart->message = text.str();
+    restart->message =
+        textOf("training did not lower the objective: stage ", stage + 1, " of ", stages.size(),
+               " stays at ", result.initial_cost, " (", result.message,
+               "); check the bags, or leave the block training at its defaults");
     return false;
   };
   auto networks = std::make_unique<Problem>(problem.model, problem.parts.front());
@@ -73,6 +72,43 @@ void minimiseRestart(const RestartProblem& problem, Progress* progress, Restart*
   if (!std::isfinite(restart->error)) {  // a rollout diverges
     restart->error = std::numeric_limits<double>::max();
   }
+}
+
+/// Selects pieces of segments, spread evenly over all data, and the goal image.
+/// @param max_frames   samples in all pieces together at most, fewer than there are
+/// @param longer_than  pieces with at most this many samples are omitted
+/// @return             all data if no piece is left
+TrainingData<float> evenPart(const TrainingData<float>& data, Eigen::Index max_frames,
+                             Eigen::Index longer_than) {
+  const Eigen::Index num_frames = data.torques.cols();
+  std::vector<Segment> chosen;
+  Eigen::Index seen = 0, taken = 0;
+  for (const Segment& segment : data.segments) {
+    for (Eigen::Index at = 0; at < segment.size; at += kPiece) {
+      const Segment piece{segment.begin + at, std::min(kPiece, segment.size - at)};
+      seen += piece.size;
+      // A piece is kept if the share of kept samples so far stays at most max_frames / num_frames.
+      const bool due = (taken + piece.size) * num_frames <= seen * max_frames;
+      if (!due || piece.size <= longer_than) continue;
+      taken += piece.size;
+      chosen.push_back(piece);
+    }
+  }
+  if (chosen.empty()) return data;
+  const Eigen::Index num_others = data.scores.cols() - num_frames;  // 1 if there is a goal image
+  TrainingData<float> part;
+  part.scores.resize(data.scores.rows(), taken + num_others);
+  part.scores.rightCols(num_others) = data.scores.rightCols(num_others);
+  part.torques.resize(data.torques.rows(), taken);
+  Eigen::Index at = 0;
+  for (const Segment& segment : chosen) {
+    part.scores.middleCols(at, segment.size) = data.scores.middleCols(segment.begin, segment.size);
+    part.torques.middleCols(at, segment.size) =
+        data.torques.middleCols(segment.begin, segment.size);
+    part.segments.push_back({at, segment.size});
+    at += segment.size;
+  }
+  return part;
 }
 
 }  // namespace
@@ -169,43 +205,6 @@ void finish(const RestartProblem& problem, Progress* progress, Restart* restart)
     Problem networks(problem.model, problem.parts[part]);
     minimiseFrom(problem.schedule.stages.back(), problem.training, &networks, progress, restart);
   }
-}
-
-TrainingData<float> evenPart(const TrainingData<float>& data, Eigen::Index max_frames,
-                             Eigen::Index longer_than) {
-  const Eigen::Index num_frames = data.torques.cols();
-  if (num_frames <= max_frames) return data;
-  // Fewer than 100 samples could not be spread over several places in pieces of 100.
-  const Eigen::Index length =
-      max_frames >= kPiece ? kPiece : std::max(longer_than + 1, max_frames / kMinPieces);
-  std::vector<Segment> chosen;
-  Eigen::Index seen = 0, taken = 0;
-  for (const Segment& segment : data.segments) {
-    for (Eigen::Index at = 0; at < segment.size; at += length) {
-      const Segment piece{segment.begin + at, std::min(length, segment.size - at)};
-      seen += piece.size;
-      // A piece is kept if the share of kept samples so far stays at most max_frames / num_frames.
-      const bool due = (taken + piece.size) * num_frames <= seen * max_frames;
-      if (!due || piece.size <= longer_than) continue;
-      taken += piece.size;
-      chosen.push_back(piece);
-    }
-  }
-  if (chosen.empty()) return data;
-  const Eigen::Index num_others = data.scores.cols() - num_frames;  // 1 if there is a goal image
-  TrainingData<float> part;
-  part.scores.resize(data.scores.rows(), taken + num_others);
-  part.scores.rightCols(num_others) = data.scores.rightCols(num_others);
-  part.torques.resize(data.torques.rows(), taken);
-  Eigen::Index at = 0;
-  for (const Segment& segment : chosen) {
-    part.scores.middleCols(at, segment.size) = data.scores.middleCols(segment.begin, segment.size);
-    part.torques.middleCols(at, segment.size) =
-        data.torques.middleCols(segment.begin, segment.size);
-    part.segments.push_back({at, segment.size});
-    at += segment.size;
-  }
-  return part;
 }
 
 }  // namespace ddm

@@ -113,12 +113,4 @@ void minimiseRestarts(const RestartProblem& problem, Progress* progress,
 /// @throws Cancelled if the training was cancelled
 void finish(const RestartProblem& problem, Progress* progress, Restart* restart);
 
-/// Selects pieces of segments, spread evenly over all data, and the goal image. A piece has up to
-/// 100 samples.
-/// @param max_frames   samples in all pieces together at most; below 100, the pieces are shorter
-/// @param longer_than  pieces with at most this many samples are omitted
-/// @return             all data if there are at most max_frames samples, or if no piece is left
-TrainingData<float> evenPart(const TrainingData<float>& data, Eigen::Index max_frames,
-                             Eigen::Index longer_than);
-
 }  // namespace ddm
