@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_model/model_file.h"
 
+#include <ddm_common/option_checks.h>
+
 #include <boost/crc.hpp>
 #include <cmath>
 #include <cstdint>
@@ -37,9 +39,10 @@ struct Writer {
     if constexpr (std::is_arithmetic<Value>::value) {
       bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));
     } else {
-      (*this)(std::uint64_t{value.size()});
-      if (value.empty()) return;
-      bytes.append(reinterpret_cast<const char*>(value.data()), value.size() * sizeof(value[0]));
+      const auto count = static_cast<std::uint64_t>(value.size());
+      (*this)(count);
+      if (count == 0) return;
+      bytes.append(reinterpret_cast<const char*>(value.data()), count * sizeof(*value.data()));
     }
   }
 };
@@ -56,12 +59,10 @@ class Reader {
     } else {
       std::uint64_t count;
       (*this)(count);
-      if (count > left_ / sizeof(value[0])) {
-        throw std::runtime_error("an array is longer than the file");
-      }
+      constexpr size_t kEach = sizeof(*value.data());
+      if (count > left_ / kEach) throw std::runtime_error("an array is longer than the file");
       value.resize(count);
-      if (count > 0)
-        std::memcpy(&value[0], take(count * sizeof(value[0])), count * sizeof(value[0]));
+      if (count > 0) std::memcpy(value.data(), take(count * kEach), count * kEach);
     }
   }
   size_t left() const { return left_; }
@@ -79,16 +80,15 @@ class Reader {
   size_t left_;
 };
 
-/// Everything after the header of a file.
+/// Everything after the header of a file. Matrices are stored column by column.
 struct Content {
   ModelOptions options;
   std::vector<int> decoder_widths;
   int image_size = 0, torque_dim = 0;
   ModelInfo info;
-  std::vector<float> support_states;
-  float brightness = 0.0F, scale = 0.0F;
-  std::vector<float> mean, basis;
-  std::vector<double> variance, theta;
+  Eigen::VectorXf support_states, basis;
+  Pca pca;
+  Eigen::VectorXd theta;
   Image goal;
 
   /// Passes all values to a Writer or a Reader, in the order of the file.
@@ -101,78 +101,63 @@ struct Content {
     each(image_size, torque_dim);
     each(info.seed, info.trial, info.frames, info.v_r, info.v_p, info.feature_spread);
     each(support_states, info.config);
-    each(brightness, scale, mean, basis, variance, theta, goal);
+    each(pca.brightness, pca.scale, pca.mean, basis, pca.variance, theta, goal);
   }
 };
 
-template <class Matrix>
-std::vector<typename Matrix::Scalar> valuesOf(const Matrix& matrix) {
-  return {matrix.data(), matrix.data() + matrix.size()};
-}
-
 Content contentOf(const Ddm& model) {
-  Content content;
-  content.options = model.options();
-  content.decoder_widths = model.options().decoderWidths();
-  content.image_size = model.imageSize();
-  content.torque_dim = model.torqueDim();
-  content.info = model.info();
-  content.support_states = valuesOf(model.info().support_states);
-  content.brightness = model.pca().brightness;
-  content.scale = model.pca().scale;
-  content.mean = valuesOf(model.pca().mean);
-  content.basis = valuesOf(model.pca().basis);
-  content.variance = valuesOf(model.pca().variance);
-  content.theta = valuesOf(model.theta());
-  content.goal = model.goal();
-  return content;
+  const auto flat = [](const Eigen::MatrixXf& matrix) {
+    return Eigen::Map<const Eigen::VectorXf>(matrix.data(), matrix.size());
+  };
+  return {model.options(),
+          model.options().decoderWidths(),
+          model.imageSize(),
+          model.torqueDim(),
+          model.info(),
+          flat(model.info().support_states),
+          flat(model.pca().basis),
+          model.pca(),
+          model.theta(),
+          model.goal()};
 }
 
 /// @throws std::exception if the content is invalid
 Ddm modelOf(Content content) {
   ModelOptions& options = content.options;
-  options.normalise_brightness = content.brightness > 0.0F;
-  ModelInfo& info = content.info;
+  options.normalise_brightness = content.pca.brightness > 0.0F;
   for (const std::string& problem : options.problems()) throw std::runtime_error(problem);
   if (content.decoder_widths != options.decoderWidths()) {
     throw std::runtime_error("its decoder does not mirror its encoder");
   }
   const auto requireWithin = [](const std::string& name, int value, int largest) {
     if (value >= 1 && value <= largest) return;
-    throw std::runtime_error("its " + name + " must lie in [1, " + std::to_string(largest) +
-                             "], got " + std::to_string(value));
+    throw std::runtime_error(textOf("its ", name, " must lie in [1, ", largest, "], got ", value));
   };
   requireWithin("image size", content.image_size, 16384);
   requireWithin("number of motors", content.torque_dim, 1000);
-  const auto state_dim = static_cast<size_t>(options.order) * options.feature_dim +
-                         static_cast<size_t>(options.order - 1) * content.torque_dim;
+  const Eigen::Index state_dim =
+      options.order * options.feature_dim + (options.order - 1) * content.torque_dim;
+  const Eigen::Index num_pixels = Eigen::Index(content.image_size) * content.image_size;
   if (content.support_states.size() % state_dim != 0) {
     throw std::runtime_error("its support states are no states");
   }
+  if (content.basis.size() != num_pixels * options.pca_dim ||
+      content.pca.variance.size() != options.pca_dim) {
+    throw std::runtime_error("the sizes of its PCA do not fit");
+  }
+  ModelInfo& info = content.info;
   info.support_states = Eigen::Map<const Eigen::MatrixXf>(
-      content.support_states.data(), static_cast<Eigen::Index>(state_dim),
-      static_cast<Eigen::Index>(content.support_states.size() / state_dim));
+      content.support_states.data(), state_dim, content.support_states.size() / state_dim);
   if (!std::isfinite(info.v_r) || !std::isfinite(info.v_p) || !std::isfinite(info.feature_spread) ||
       !info.support_states.allFinite()) {
     throw std::runtime_error(
         "its errors, support states and the spread of its features must be finite");
   }
-  const auto num_pixels = static_cast<size_t>(content.image_size) * content.image_size;
-  const auto pca_dim = static_cast<size_t>(options.pca_dim);
-  if (content.mean.size() != num_pixels || content.basis.size() != num_pixels * pca_dim ||
-      content.variance.size() != pca_dim) {
-    throw std::runtime_error("the sizes of its PCA do not fit");
-  }
-  Pca pca;
-  pca.brightness = content.brightness;
-  pca.scale = content.scale;
-  pca.blur = Blur(content.image_size, options.blur);
-  pca.mean = Eigen::Map<const Eigen::VectorXf>(content.mean.data(), num_pixels);
-  pca.basis = Eigen::Map<const Eigen::MatrixXf>(content.basis.data(), num_pixels, pca_dim);
-  pca.variance = Eigen::Map<const Eigen::VectorXd>(content.variance.data(), pca_dim);
-  return Ddm(options, content.image_size, content.torque_dim, std::move(pca),
-             Eigen::Map<const Eigen::VectorXd>(content.theta.data(), content.theta.size()),
-             std::move(content.goal), std::move(info));
+  content.pca.blur = Blur(content.image_size, options.blur);
+  content.pca.basis =
+      Eigen::Map<const Eigen::MatrixXf>(content.basis.data(), num_pixels, options.pca_dim);
+  return Ddm(options, content.image_size, content.torque_dim, std::move(content.pca),
+             std::move(content.theta), std::move(content.goal), std::move(info));
 }
 
 }  // namespace
@@ -187,11 +172,11 @@ std::string serialiseModel(const Ddm& model) {
 }
 
 Ddm deserialiseModel(const std::string& bytes, const std::string& source) {
-  const auto fail = [&source](const std::string& why) -> std::runtime_error {
-    return std::runtime_error("model " + source + ": " + why);
+  const auto fail = [&source](const auto&... why) {
+    return std::runtime_error(textOf("model ", source, ": ", why...));
   };
   if (bytes.compare(0, kMagicSize, kMagic) != 0) {
-    throw fail("is not a DDM model (it does not begin with " + std::string(kMagic) + ")");
+    throw fail("is not a DDM model (it does not begin with ", kMagic, ")");
   }
   if (bytes.size() < kHeaderSize) throw fail("is cut short: copy or train it again");
   Reader header(bytes.data() + kMagicSize, kHeaderSize - kMagicSize);
@@ -201,13 +186,12 @@ Ddm deserialiseModel(const std::string& bytes, const std::string& source) {
   header(size);
   header(crc);
   if (version != kVersion) {
-    throw fail("has format version " + std::to_string(version) + ", this program reads version " +
-               std::to_string(kVersion) + ": train it again from its bags");
+    throw fail("has format version ", version, ", this program reads version ", kVersion,
+               ": train it again from its bags");
   }
   if (size != bytes.size() - kHeaderSize) {
-    throw fail("is cut short or has grown: " + std::to_string(bytes.size() - kHeaderSize) +
-               " bytes of content where it announces " + std::to_string(size) +
-               "; copy or train it again");
+    throw fail("is cut short or has grown: ", bytes.size() - kHeaderSize,
+               " bytes of content where it announces ", size, "; copy or train it again");
   }
   if (crc != crc32(bytes.data() + kHeaderSize, size)) {
     throw fail("is damaged (wrong checksum): copy or train it again");
@@ -219,7 +203,7 @@ Ddm deserialiseModel(const std::string& bytes, const std::string& source) {
     if (reader.left() > 0) throw std::runtime_error("there are bytes after its content");
     return modelOf(std::move(content));
   } catch (const std::exception& e) {
-    throw fail(std::string("makes no sense: ") + e.what());
+    throw fail("makes no sense: ", e.what());
   }
 }
 
