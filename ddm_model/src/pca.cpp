@@ -2,13 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_model/pca.h"
 
+#include <ddm_common/option_checks.h>
+
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <random>
 #include <stdexcept>
-#include <string>
 
 namespace ddm {
 namespace {
@@ -117,20 +118,17 @@ Blur::Blur(int image_size, double std) {
   G_ = G.cast<float>();  // converted last, so that the weights equal those that NumPy computes
 }
 
-Eigen::MatrixXf Pca::project(const Eigen::Ref<const ImageMatrix>& pixels) const {
-  Eigen::MatrixXf images = pixels.cast<float>() / kWhite;
-  for (Eigen::Index i = 0; i < images.cols(); ++i) {
-    images.col(i) *= static_cast<float>(gainOf(pixels.col(i), brightness));
-  }
-  blur.apply(&images);
-  return scale * (basis.transpose() * (images.colwise() - mean));
-}
-
 Eigen::MatrixXf Pca::project(const DataSet& data) const {
   Eigen::MatrixXf scores(basis.cols(), data.numImages());
   for (Eigen::Index begin = 0; begin < data.numImages(); begin += kBlock) {
-    const Eigen::Index size = std::min(kBlock, data.numImages() - begin);
-    scores.middleCols(begin, size) = project(data.pixels(begin, size));
+    const ImageMatrix pixels = data.pixels(begin, std::min(kBlock, data.numImages() - begin));
+    Eigen::MatrixXf images = pixels.cast<float>() / kWhite;
+    for (Eigen::Index i = 0; i < images.cols(); ++i) {
+      images.col(i) *= static_cast<float>(gainOf(pixels.col(i), brightness));
+    }
+    blur.apply(&images);
+    const Eigen::MatrixXf of_block = scale * (basis.transpose() * (images.colwise() - mean));
+    scores.middleCols(begin, images.cols()) = of_block;
   }
   return scores;
 }
@@ -155,14 +153,13 @@ Pca fitPca(const DataSet& data, int dim, const Blur& blur, bool normalise_bright
            const std::function<void()>& check) {
   const Eigen::Index num_images = data.numImages();
   if (data.numPixels() < dim) {
-    throw std::invalid_argument("PCA to model/pca_dim = " + std::to_string(dim) + " of images of " +
-                                std::to_string(data.numPixels()) + " pixels: lower model/pca_dim");
+    throw std::invalid_argument(textOf("PCA to model/pca_dim = ", dim, " of images of ",
+                                       data.numPixels(), " pixels: lower model/pca_dim"));
   }
   if (num_images < dim + 1) {
-    throw std::invalid_argument("PCA to model/pca_dim = " + std::to_string(dim) +
-                                " needs at least " + std::to_string(dim + 1) + " images, got " +
-                                std::to_string(num_images) +
-                                ": record more frames or lower model/pca_dim");
+    throw std::invalid_argument(textOf("PCA to model/pca_dim = ", dim, " needs at least ", dim + 1,
+                                       " images, got ", num_images,
+                                       ": record more frames or lower model/pca_dim"));
   }
   const CentredImages images(data, blur, normalise_brightness);
   Pca pca;
@@ -193,8 +190,8 @@ Pca fitPca(const DataSet& data, int dim, const Blur& blur, bool normalise_bright
   pca.basis = basis * ritz.eigenvectors().rightCols(dim).rowwise().reverse().cast<float>();
   pca.variance = ritz.eigenvalues().tail(dim).reverse().cwiseMax(0.0) / (kWhite * kWhite);
   if (!(pca.variance[0] > 1e-12)) {
-    throw std::invalid_argument("all " + std::to_string(num_images) +
-                                " images are the same: there is nothing to learn from them");
+    throw std::invalid_argument(
+        textOf("all ", num_images, " images are the same: there is nothing to learn from them"));
   }
   // The sign of a component is arbitrary. Fix it, so that equal data give equal models.
   for (int k = 0; k < dim; ++k) {

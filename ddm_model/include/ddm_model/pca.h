@@ -69,10 +69,6 @@ struct Pca {
   Eigen::VectorXd variance;  ///< variance along each column [grey^2]    [pca_dim]
   float scale = 1.0F;        ///< scale of the scores [1 / grey]
 
-  /// @param pixels  grey values k of N images      [D x N]
-  /// @return        scores [-]                     [pca_dim x N]
-  Eigen::MatrixXf project(const Eigen::Ref<const ImageMatrix>& pixels) const;
-
   /// Projects all images of a data set, the goal image last, in blocks of a few hundred images.
   /// @return        scores [-]                     [pca_dim x data.numImages()]
   Eigen::MatrixXf project(const DataSet& data) const;
