@@ -3,12 +3,17 @@
 #include "mpc_node.h"
 
 #include <ddm_common/image_codec.h>
+#include <ddm_common/image_options.h>
+#include <ddm_common/run_node.h>
 #include <ddm_common/topic_peers.h>
+#include <ddm_model/minimise.h>
 #include <ddm_model/model_file.h>
 #include <ddm_msgs/topics.h>
 
 #include <algorithm>
-#include <sstream>
+#include <utility>
+
+#include "plan_messages.h"
 
 namespace ddm {
 namespace {
@@ -182,7 +187,7 @@ void MpcNode::answer(const sensor_msgs::Image& image) {
     publishTorque(image.header.stamp, Eigen::VectorXd::Zero(controller_.torque_dim), false);
   } else if (decision) {
     last_progress_ = ros::SteadyTime::now();
-    if (trial->result().num_steps == 0) scalars_.forget();
+    if (trial->result().num_steps == 0) predicted_.resize(0);
     trial->collect(image.header.stamp, *decision);
     publish(image.header, *decision);
     last_image_.reset();  // no later trial may begin with it, even if the clock is set back
@@ -217,10 +222,8 @@ std::optional<Decision> MpcNode::decide(TrialRun* trial, const sensor_msgs::Imag
 
 void MpcNode::publish(const std_msgs::Header& header, const Decision& decision) {
   publishTorque(header.stamp, decision.torque, decision.exploratory);
-  if (!decision.plan) {
-    scalars_.forget();
-    return;
-  }
+  const Eigen::VectorXd predicted = std::exchange(predicted_, Eigen::VectorXd());
+  if (!decision.plan) return;
   const Plan& plan = *decision.plan;
   health_.countPlan(plan);
   const ros::SteadyTime now = ros::SteadyTime::now();
@@ -229,7 +232,8 @@ void MpcNode::publish(const std_msgs::Header& header, const Decision& decision) 
     log_.warn("plan failed, the torque is 0: " + plan.message);
   }
   plan_pub_.publish(planMessage(header.stamp, plan));
-  scalars_pub_.publish(scalars_.of(header.stamp, plan, decision.goal_distance));
+  scalars_pub_.publish(scalarsMessage(header.stamp, plan, decision.goal_distance, predicted));
+  if (plan.status != PlanStatus::kFailed) predicted_ = plan.features.col(1);
 }
 
 void MpcNode::publishTorque(const ros::Time& stamp, const Eigen::VectorXd& torque,
@@ -251,11 +255,9 @@ void MpcNode::onFinish() {
   if (!trouble.text.empty()) return abort(trouble);
   const ddm_msgs::RunTrialGoalConstPtr goal = goal_;
   const ddm_msgs::RunTrialResult result = endTrial();
-  std::ostringstream text;
-  text << "trial " << goal->trial << (goal->evaluation != 0 ? " (evaluation)" : "") << ": "
-       << result.num_steps << " torques, " << result.num_exploratory << " exploratory, "
-       << result.num_failed_plans << " failed plans, " << result.num_cut_plans << " cut short";
-  log_.info(text.str());
+  log_.info(textOf("trial ", goal->trial, goal->evaluation != 0 ? " (evaluation)" : "", ": ",
+                   result.num_steps, " torques, ", result.num_exploratory, " exploratory, ",
+                   result.num_failed_plans, " failed plans, ", result.num_cut_plans, " cut short"));
   server_.setSucceeded(result);
 }
 
@@ -274,27 +276,23 @@ void MpcNode::onTick() {
 
 /// @return what has been missing for longer than controller/timeout; empty if nothing is missing
 std::optional<MpcNode::Trouble> MpcNode::describeSilence() {
-  std::ostringstream reason;
-  std::string topic = model_sub_.getTopic();
   const std::lock_guard<std::mutex> lock(mutex_);
   if (finished_ || preparing_) return std::nullopt;
   const ros::SteadyTime since = std::max(last_progress_, deciding_since_.value_or(last_progress_));
   if ((ros::SteadyTime::now() - since).toSec() <= controller_.timeout) return std::nullopt;
-  if (trial_ == nullptr) {
-    const bool is_goal = goal_->model_id.empty() || goal_->model_id == model_id_;
-    reason << (is_goal ? "the goal image of the trial" : "model " + goal_->model_id)
-           << " did not come";
-    if (is_goal) topic = goal_image_sub_.getTopic();
-  } else if (deciding_since_) {
-    reason << "no plan for step " << trial_->result().num_steps + 1;
-    topic.clear();
-  } else {
-    reason << "no image after step " << trial_->result().num_steps;
-    topic = image_sub_.getTopic();
+  const std::string limit = textOf(" within ", controller_.timeout, " s");
+  if (trial_ != nullptr) {
+    const auto num_steps = trial_->result().num_steps;
+    if (deciding_since_) {
+      return Trouble{textOf("no plan for step ", num_steps + 1, limit, ": set mpc/time_budget"),
+                     ""};
+    }
+    return Trouble{textOf("no image after step ", num_steps, limit), image_sub_.getTopic()};
   }
-  reason << " within " << controller_.timeout << " s";
-  if (topic.empty()) reason << ": set mpc/time_budget";
-  return Trouble{reason.str(), topic};
+  if (goal_->model_id.empty() || goal_->model_id == model_id_) {
+    return Trouble{"the goal image of the trial did not come" + limit, goal_image_sub_.getTopic()};
+  }
+  return Trouble{"model " + goal_->model_id + " did not come" + limit, model_sub_.getTopic()};
 }
 
 /// Ends the trial and the search of its running plan.
@@ -327,3 +325,18 @@ void MpcNode::abort(const Trouble& trouble) {
 }
 
 }  // namespace ddm
+
+int main(int argc, char** argv) {
+  ddm::silenceSolverLog();
+  return ddm::runNode("mpc_node", argc, argv, [](auto nh, auto pnh, ddm::ParamReader* params) {
+    params->ignore("image_transport");    // image_transport reads it
+    params->ignore("diagnostic_period");  // diagnostic_updater reads it
+    const auto image = params->read<ddm::ImageOptions>("image");
+    const auto mpc = params->read<ddm::MpcOptions>("mpc");
+    const auto controller = params->read<ddm::ControllerOptions>("controller");
+    params->requireValid();
+    ROS_INFO_STREAM("mpc_node runs with\n" << ddm::toYaml(mpc) << "\n" << ddm::toYaml(controller));
+    ddm::MpcNode node(nh, pnh, image.size, mpc, controller);
+    ros::spin();
+  });
+}

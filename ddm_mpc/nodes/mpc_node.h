@@ -23,7 +23,6 @@
 #include "applied_torques.h"
 #include "control_health.h"
 #include "ddm_mpc/mpc_options.h"
-#include "plan_messages.h"
 #include "trial_run.h"
 
 namespace ddm {
@@ -98,7 +97,7 @@ class MpcNode {
   // Used only by the image thread.
   // Not yet answered; may belong to a trial whose goal is still to come. Null: none
   sensor_msgs::ImageConstPtr last_image_;
-  PlanScalars scalars_;
+  Eigen::VectorXd predicted_;  // feature of the next image by the last plan; empty: unknown
   ros::SteadyTime last_plan_log_;
 
   // Guards the members up to deciding_since_. Not held while a plan is computed.

@@ -19,10 +19,9 @@ std::shared_ptr<MpcPolicy> makePolicy(std::shared_ptr<const Ddm> model, int imag
   if (model == nullptr) return nullptr;
   if (model->imageSize() != image_size || model->torqueDim() != controller.torque_dim) {
     throw std::invalid_argument(
-        "the model has images of size " + std::to_string(model->imageSize()) + " and " +
-        std::to_string(model->torqueDim()) + " torque(s), this node has image/size " +
-        std::to_string(image_size) + " and controller/torque_dim " +
-        std::to_string(controller.torque_dim) + ": start both with the same configuration");
+        textOf("the model has images of size ", model->imageSize(), " and ", model->torqueDim(),
+               " torque(s), this node has image/size ", image_size, " and controller/torque_dim ",
+               controller.torque_dim, ": start both with the same configuration"));
   }
   return std::make_shared<MpcPolicy>(std::move(model), mpc);
 }
@@ -67,8 +66,7 @@ std::optional<Decision> TrialRun::decide(const sensor_msgs::Image& image,
         "it has no stamp, which pairs it with its torque: set it in the camera driver");
   }
   if (image.header.stamp <= last_stamp_) return std::nullopt;
-  const std::string camera =
-      std::to_string(image.width) + "x" + std::to_string(image.height) + " " + image.encoding;
+  const std::string camera = textOf(image.width, "x", image.height, " ", image.encoding);
   if (camera_.empty()) camera_ = camera;
   if (camera != camera_) {
     throw std::invalid_argument("the images change from " + camera_ + " to " + camera);

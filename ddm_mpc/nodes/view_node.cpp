@@ -3,6 +3,7 @@
 #include <cv_bridge/cv_bridge.h>
 #include <ddm_common/image_codec.h>
 #include <ddm_common/image_options.h>
+#include <ddm_common/option_checks.h>
 #include <ddm_common/run_node.h>
 #include <ddm_model/ddm.h>
 #include <ddm_model/model_file.h>
@@ -37,9 +38,8 @@ Eigen::MatrixXd featuresOf(const ddm_msgs::Plan& plan, std::size_t feature_dim) 
   if (plan.status == ddm_msgs::Plan::FAILED) return {};
   const std::size_t count = static_cast<std::size_t>(plan.horizon) + 1;
   if (plan.feature.size() != feature_dim * count) {
-    throw std::invalid_argument("it has " + std::to_string(plan.feature.size()) + " numbers for " +
-                                std::to_string(count) + " features of size " +
-                                std::to_string(feature_dim));
+    throw std::invalid_argument(textOf("it has ", plan.feature.size(), " numbers for ", count,
+                                       " features of size ", feature_dim));
   }
   const Eigen::Map<const Eigen::MatrixXd> features(plan.feature.data(), feature_dim, count);
   if (!features.allFinite()) throw std::invalid_argument("it holds features that are not finite");
@@ -91,9 +91,9 @@ class ViewNode {
     try {
       Ddm model = deserialiseModel(bytes, "on topic " + model_sub_.getTopic());
       if (model.imageSize() != image_size_) {
-        throw std::invalid_argument("its images have size " + std::to_string(model.imageSize()) +
-                                    ", this node has image/size " + std::to_string(image_size_) +
-                                    ": start both with the same configuration");
+        throw std::invalid_argument(textOf("its images have size ", model.imageSize(),
+                                           ", this node has image/size ", image_size_,
+                                           ": start both with the same configuration"));
       }
       model_ = std::move(model);
     } catch (const std::exception& e) {
