@@ -4,7 +4,6 @@
 
 #include <fcntl.h>
 #include <pwd.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -17,17 +16,14 @@
 #include <regex>
 #include <sstream>
 #include <stdexcept>
+#include <system_error>
 
 namespace ddm {
 namespace {
 
-std::string reason() { return errno == 0 ? "unknown reason" : std::strerror(errno); }
+namespace fs = std::filesystem;
 
-/// @return file type at the path after following links; 0 if the path does not exist
-mode_t kindOf(const std::string& path) {
-  struct stat status {};
-  return ::stat(path.c_str(), &status) == 0 ? status.st_mode & S_IFMT : 0;
-}
+std::string reason() { return errno == 0 ? "unknown reason" : std::strerror(errno); }
 
 [[noreturn]] void cannot(const std::string& what, const std::string& path) {
   throw std::runtime_error("cannot " + what + " " + path + ": " + reason());
@@ -38,8 +34,8 @@ mode_t kindOf(const std::string& path) {
 /// @return the file descriptor
 /// @throws std::runtime_error if that fails, or if `path` exists and is not a regular file
 int openUnfinished(const std::string& path, std::string* unfinished) {
-  const mode_t kind = kindOf(path);
-  if (kind != 0 && kind != S_IFREG) {
+  std::error_code ignored;
+  if (fs::exists(path, ignored) && !fs::is_regular_file(path, ignored)) {
     throw std::runtime_error("cannot write " + path + ": it is not a regular file");
   }
   std::random_device random;
@@ -91,15 +87,11 @@ bool renameAndStore(const std::string& from, const std::string& to) {
 }  // namespace
 
 void requirePlainFile(const std::string& path) {
-  errno = 0;
-  const mode_t kind = kindOf(path);
-  if (kind == 0) cannot("read", path);
-  if (kind == S_IFDIR) {
-    errno = EISDIR;
-    cannot("read", path);
-  }
-  if (kind != S_IFREG)
-    throw std::runtime_error("cannot read " + path + ": it is not a regular file");
+  std::error_code error;
+  if (fs::is_regular_file(path, error)) return;
+  if (fs::is_directory(path, error)) error = std::make_error_code(std::errc::is_a_directory);
+  throw std::runtime_error("cannot read " + path + ": " +
+                           (error ? error.message() : "it is not a regular file"));
 }
 
 std::string readFile(const std::string& path) {
@@ -131,7 +123,6 @@ void writeFileAtomically(const std::string& path, const std::string& bytes) {
 }
 
 void removeUnfinished(const std::string& folder) {
-  namespace fs = std::filesystem;
   static const std::regex kUnfinished(".*\\.unfinished\\.[0-9a-f]+");
   std::error_code ignored;  // remaining files do no harm
   const auto options = fs::directory_options::skip_permission_denied;
