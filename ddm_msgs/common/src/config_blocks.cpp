@@ -16,11 +16,6 @@ namespace {
 
 constexpr std::size_t kMaxBytes = 1000000;  // largest size of a configuration file
 
-[[noreturn]] void refuseAt(const std::string& path, const YAML::Mark& mark,
-                           const std::string& what) {
-  throw std::invalid_argument(path + ":" + std::to_string(mark.line + 1) + ": " + what);
-}
-
 void requireUniqueKeys(const YAML::Node& map, const std::string& path) {
   std::set<std::string> seen;
   for (const auto& entry : map) {

@@ -11,17 +11,14 @@
 #include <stdexcept>
 #include <vector>
 
+#include "ddm_common/option_checks.h"
+
 namespace ddm {
 namespace {
 
 namespace utf = boost::locale::utf;
 
 constexpr std::size_t kMaxLevels = 20;
-
-[[noreturn]] void refuse(const std::string& source, const YAML::Mark& mark,
-                         const std::string& what) {
-  throw std::invalid_argument(source + ":" + std::to_string(mark.line + 1) + ": " + what);
-}
 
 /// Whether yaml-cpp prints a text as it was read. yaml-cpp replaces bytes that are not UTF-8, and
 /// code points that are no characters.
@@ -42,7 +39,7 @@ void refuseColonBeforeEnd(const std::string& text, const std::string& source) {
   if (at == std::string::npos) return;
   YAML::Mark mark;
   mark.line = static_cast<int>(std::count(text.begin(), text.begin() + at, '\n'));
-  refuse(source, mark, "a ':' must not stand directly before ']': add a value or a blank");
+  refuseAt(source, mark, "a ':' must not stand directly before ']': add a value or a blank");
 }
 
 /// Event handler that stops the recursive parser before the document becomes too deep.
@@ -51,18 +48,19 @@ class Inspection : public YAML::EventHandler {
   explicit Inspection(const std::string& source) : source_(source) {}
 
   void OnDocumentStart(const YAML::Mark& mark) override {
-    if (++num_documents_ > 1) refuse(source_, mark, "only one YAML document is allowed in a file");
+    if (++num_documents_ > 1)
+      refuseAt(source_, mark, "only one YAML document is allowed in a file");
   }
   void OnDocumentEnd() override {}
   void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
     if (std::find(open_.begin(), open_.end(), anchor) != open_.end()) {
-      refuse(source_, mark, "a list or map contains itself");
+      refuseAt(source_, mark, "a list or map contains itself");
     }
   }
   void OnScalar(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
                 const std::string& text) override {
-    if (!isText(text)) refuse(source_, mark, "a name or value is not valid UTF-8");
+    if (!isText(text)) refuseAt(source_, mark, "a name or value is not valid UTF-8");
   }
   void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor,
                        YAML::EmitterStyle::value) override {
@@ -78,8 +76,8 @@ class Inspection : public YAML::EventHandler {
  private:
   void begin(const YAML::Mark& mark, YAML::anchor_t anchor) {
     if (open_.size() == kMaxLevels) {
-      refuse(source_, mark,
-             "at most " + std::to_string(kMaxLevels) + " lists and maps may lie in each other");
+      refuseAt(source_, mark,
+               textOf("at most ", kMaxLevels, " lists and maps may lie in each other"));
     }
     open_.push_back(anchor);
   }
@@ -90,6 +88,10 @@ class Inspection : public YAML::EventHandler {
 };
 
 }  // namespace
+
+void refuseAt(const std::string& source, const YAML::Mark& mark, const std::string& what) {
+  throw std::invalid_argument(textOf(source, ":", mark.line + 1, ": ", what));
+}
 
 YAML::Node parseYaml(const std::string& text, const std::string& source) {
   const std::string lines = text + "\n";  // so that no ':' is at the end
@@ -102,7 +104,7 @@ YAML::Node parseYaml(const std::string& text, const std::string& source) {
     }
     return YAML::Load(lines);
   } catch (const YAML::Exception& e) {
-    refuse(source, e.mark, "not valid YAML: " + e.msg);
+    refuseAt(source, e.mark, "not valid YAML: " + e.msg);
   }
 }
 

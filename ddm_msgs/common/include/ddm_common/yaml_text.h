@@ -18,6 +18,11 @@ namespace ddm {
 ///         value that is not UTF-8
 YAML::Node parseYaml(const std::string& text, const std::string& source);
 
+/// Refuses a text because of what is wrong at a position.
+/// @throws std::invalid_argument with source and line
+[[noreturn]] void refuseAt(const std::string& source, const YAML::Mark& mark,
+                           const std::string& what);
+
 /// Prints a value in one line of at most 120 characters, for a message.
 std::string oneLine(const YAML::Node& node);
 
