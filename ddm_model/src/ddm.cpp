@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_model/ddm.h"
 
+#include <ddm_common/option_checks.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -15,16 +17,16 @@ constexpr char kRemedy[] = "; train it again";
 
 void requireSize(const std::string& number, Eigen::Index size, Eigen::Index due) {
   if (size == due) return;
-  throw std::invalid_argument("model: the number of " + number + " must be " + std::to_string(due) +
-                              ", got " + std::to_string(size) + kRemedy);
+  throw std::invalid_argument(
+      textOf("model: the number of ", number, " must be ", due, ", got ", size, kRemedy));
 }
 
 template <class Values>
 void requireFinite(const std::string& name, const Values& values) {
   for (Eigen::Index i = 0; i < values.size(); ++i) {
     if (std::isfinite(values.data()[i])) continue;
-    throw std::invalid_argument("model: " + name + " must be finite, number " + std::to_string(i) +
-                                " is " + std::to_string(values.data()[i]) + kRemedy);
+    throw std::invalid_argument(
+        textOf("model: ", name, " must be finite, number ", i, " is ", values.data()[i], kRemedy));
   }
 }
 
@@ -60,13 +62,13 @@ Ddm::Ddm(ModelOptions options, int image_size, int torque_dim, Pca pca, Eigen::V
   requireFinite("PCA basis", pca_.basis);
   requireFinite("mean image", pca_.mean);
   requireFinite("PCA variances", pca_.variance);
-  if (!(pca_.brightness >= 0.0F) || !std::isfinite(pca_.brightness)) {
-    throw std::invalid_argument("model: the brightness of images must be >= 0 and finite, got " +
-                                std::to_string(pca_.brightness) + kRemedy);
+  if (!isNotNegative(pca_.brightness)) {
+    throw std::invalid_argument(textOf(
+        "model: the brightness of images must be >= 0 and finite, got ", pca_.brightness, kRemedy));
   }
-  if (!(pca_.scale > 0.0F) || !std::isfinite(pca_.scale)) {
-    throw std::invalid_argument("model: the scale of PCA must be > 0 and finite, got " +
-                                std::to_string(pca_.scale) + kRemedy);
+  if (!isPositive(pca_.scale)) {
+    throw std::invalid_argument(
+        textOf("model: the scale of PCA must be > 0 and finite, got ", pca_.scale, kRemedy));
   }
   projection_ = Projection(pca_);
   networks_.prediction_model.fixParameters(thetaP());
@@ -77,8 +79,8 @@ Ddm::Ddm(ModelOptions options, int image_size, int torque_dim, Pca pca, Eigen::V
 
 Eigen::VectorXd Ddm::encode(const Image& image) const {
   if (static_cast<Eigen::Index>(image.size()) != pca_.mean.size()) {
-    throw std::invalid_argument("model: an image must have " + std::to_string(pca_.mean.size()) +
-                                " pixels, got " + std::to_string(image.size()));
+    throw std::invalid_argument(
+        textOf("model: an image must have ", pca_.mean.size(), " pixels, got ", image.size()));
   }
   Mlp<double>::Tape tape;  // eq. (3a)
   networks_.encoder().forward(networks_.encoderOf(theta_.data()), projection_(image), &tape);

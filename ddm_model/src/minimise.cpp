@@ -4,12 +4,13 @@
 
 #include <ceres/gradient_problem.h>
 #include <ceres/gradient_problem_solver.h>
+#include <ddm_common/option_checks.h>
 #include <glog/logging.h>
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
-#include <sstream>
 #include <utility>
 
 namespace ddm {
@@ -98,24 +99,16 @@ class Search : public ceres::IterationCallback {
   }
 
   std::string message() const {
-    switch (best_.reason) {
-      case TerminationReason::kConverged:
-        return "converged";
-      case TerminationReason::kIterationLimit:
-        return "limit of iterations reached";
-      case TerminationReason::kEvaluationLimit:
-        return "limit of evaluations reached";
-      case TerminationReason::kStopped:
-        return "stopped";
-      case TerminationReason::kStartFailed:
-        return "the function cannot be evaluated at the start";
-      case TerminationReason::kNoDecrease:
-        break;
-    }
-    std::ostringstream text;
-    text << (best_.improved() ? "no further step" : "no step")
-         << " lowers the cost, though its gradient has an entry of magnitude " << slope();
-    return text.str();
+    static const std::map<TerminationReason, std::string> texts = {
+        {TerminationReason::kConverged, "converged"},
+        {TerminationReason::kIterationLimit, "limit of iterations reached"},
+        {TerminationReason::kEvaluationLimit, "limit of evaluations reached"},
+        {TerminationReason::kStopped, "stopped"},
+        {TerminationReason::kStartFailed, "the function cannot be evaluated at the start"}};
+    const auto found = texts.find(best_.reason);
+    if (found != texts.end()) return found->second;
+    return textOf(best_.improved() ? "no further step" : "no step",
+                  " lowers the cost, though its gradient has an entry of magnitude ", slope());
   }
 
   const DifferentiableFunction& f_;

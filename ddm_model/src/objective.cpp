@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_model/objective.h"
 
+#include <ddm_common/option_checks.h>
+
 #include <algorithm>
 #include <exception>
 #include <stdexcept>
@@ -52,9 +54,9 @@ template <class Scalar>
 void JointObjective<Scalar>::requirePredictions() const {
   if (numPredictions() > 0) return;
   throw std::invalid_argument(
-      "no prediction can be learned: each segment of the data (frames without a gap, each with "
-      "its torque) needs more than model/order = " +
-      std::to_string(networks_.prediction_model.order()) + " frames");
+      textOf("no prediction can be learned: each segment of the data (frames without a gap, each "
+             "with its torque) needs more than model/order = ",
+             networks_.prediction_model.order(), " frames"));
 }
 
 /// Allocates memory for predictions up to num_steps ahead.

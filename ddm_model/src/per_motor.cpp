@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_model/per_motor.h"
 
+#include <ddm_common/option_checks.h>
+
 #include <algorithm>
-#include <cmath>
-#include <sstream>
 #include <stdexcept>
 
 namespace ddm {
@@ -13,8 +13,9 @@ Eigen::VectorXd perMotor(const std::vector<double>& limits, int torque_dim,
                          const std::string& key) {
   if (limits.size() == 1) return Eigen::VectorXd::Constant(torque_dim, limits[0]);
   if (static_cast<int>(limits.size()) != torque_dim) {
-    throw std::invalid_argument(key + " must be one number for all motors or one for each of " +
-                                std::to_string(torque_dim) + ", got " + limitsText(limits));
+    throw std::invalid_argument(textOf(key,
+                                       " must be one number for all motors or one for each of ",
+                                       torque_dim, ", got ", limitsText(limits)));
   }
   return Eigen::Map<const Eigen::VectorXd>(limits.data(), torque_dim);
 }
@@ -31,15 +32,13 @@ bool within(const std::vector<double>& limits, const std::vector<double>& outer)
 }
 
 std::string limitsText(const std::vector<double>& limits) {
-  std::ostringstream text;
-  for (size_t i = 0; i < limits.size(); ++i) text << (i > 0 ? ", " : "") << limits[i];
-  return limits.size() == 1 ? text.str() : "[" + text.str() + "]";
+  std::string text;
+  for (const double limit : limits) text += textOf(text.empty() ? "" : ", ", limit);
+  return limits.size() == 1 ? text : "[" + text + "]";
 }
 
 bool areLimits(const std::vector<double>& limits) {
-  return !limits.empty() && std::all_of(limits.begin(), limits.end(), [](double limit) {
-    return limit > 0.0 && std::isfinite(limit);
-  });
+  return !limits.empty() && std::all_of(limits.begin(), limits.end(), isPositive);
 }
 
 }  // namespace ddm

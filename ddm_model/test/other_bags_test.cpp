@@ -442,7 +442,7 @@ TEST_F(OtherBags, TheTimeBetweenFramesMustBeGivenAndSuitTheCamera) {
   EXPECT_TRUE(isRefused({"0.0333", "data_set/dt = 0.02"}));
   for (const double dt : {0.04, 0.05}) {  // frames too fast, and each image on its own
     options_.dt = dt;
-    EXPECT_TRUE(isRefused({"every 0.0333 s", "data_set/dt = 0.0", "0.0333 or 0.0667"}));
+    EXPECT_TRUE(isRefused({"every 0.0333 s", "data_set/dt = 0.0", "0.0333 s or 0.0667 s"}));
   }
   options_.dt = kDt / kImagesPerFrame;
   EXPECT_EQ(read().data.numFrames(), kFrames * kImagesPerFrame);

@@ -3,6 +3,7 @@
 #include <ddm_bag_io/bag_cache.h>
 #include <ddm_bag_io/model_config.h>
 #include <ddm_common/image_codec.h>
+#include <ddm_common/option_checks.h>
 #include <ddm_common/plain_file.h>
 #include <ddm_model/minimise.h>
 #include <ddm_model/model_file.h>
@@ -12,7 +13,6 @@
 #include <unistd.h>
 
 #include <iostream>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -80,11 +80,9 @@ void run(const Arguments& arguments) {
   const double excess =
       (data.torques().cwiseAbs().rowwise().maxCoeff().array() / limits.array()).maxCoeff(&motor);
   if (excess > 1.0) {
-    std::ostringstream text;
-    text << "the largest torque of motor " << motor << " in the bags is " << excess * limits(motor)
-         << " N m, its limit is " << limits(motor) << " N m (" << limits_from
-         << "): set model/max_torque to what the motor can do";
-    warn(text.str());
+    warn(ddm::textOf("the largest torque of motor ", motor, " in the bags is ",
+                     excess * limits(motor), " N m, its limit is ", limits(motor), " N m (",
+                     limits_from, "): set model/max_torque to what the motor can do"));
   }
   if (!data.hasGoal()) {
     std::cerr << "no --goal and no goal_image in the bags: the model can predict, but not be "

@@ -118,12 +118,10 @@ EpsilonGreedy::EpsilonGreedy(std::shared_ptr<Policy> policy, const Options& opti
     if (!ok) throw std::invalid_argument(problem);
   };
   require(options.epsilon >= 0.0 && options.epsilon <= 1.0,
-          "epsilon must lie in [0, 1], got " + std::to_string(options.epsilon));
+          textOf("epsilon must lie in [0, 1], got ", options.epsilon));
   require(policy_ != nullptr || options.epsilon == 1.0, "a trial with epsilon < 1 needs a model");
-  require(options.hold_steps >= 1,
-          "hold_steps must be >= 1, got " + std::to_string(options.hold_steps));
-  require(options.max_torque.size() >= 1 && (options.max_torque.array() > 0.0).all(),
-          "max_torque must be > 0 for each of at least one motor");
+  require(options.hold_steps >= 1, textOf("hold_steps must be >= 1, got ", options.hold_steps));
+  eigen_assert(options.max_torque.size() >= 1 && (options.max_torque.array() > 0.0).all());
   if (policy_ == nullptr) return;
   policy_->setExploring(options.epsilon > 0.0);
   policy_->startTrial(id);
@@ -135,9 +133,9 @@ void EpsilonGreedy::setGoal(const Image& goal) {
 
 void EpsilonGreedy::correctTorque(const Eigen::VectorXd& torque) {
   if (torque.size() != options_.max_torque.size() || !torque.allFinite()) {
-    throw std::invalid_argument(
-        "an applied torque must be " + std::to_string(options_.max_torque.size()) +
-        " finite number(s), one for each motor, got " + std::to_string(torque.size()));
+    throw std::invalid_argument(textOf("an applied torque must be ", options_.max_torque.size(),
+                                       " finite number(s), one for each motor, got ",
+                                       torque.size()));
   }
   if (acted_) acted_ = torque;
 }

@@ -218,10 +218,10 @@ DdmPlanCost makePlanCost(const Ddm& model, const MpcOptions& options) {
     return DdmPlanCost(model, options.horizon, options.control_weight);
   }
   if (model.torqueDim() > SaturatingCost::kMaxMotors) {
-    throw std::invalid_argument("mpc/cost " + options.cost + " needs a model with at most " +
-                                std::to_string(SaturatingCost::kMaxMotors) +
-                                " motors, as it compares 3^motors sets of torques, got " +
-                                std::to_string(model.torqueDim()) + ": set mpc/cost to distance");
+    throw std::invalid_argument(textOf("mpc/cost ", options.cost, " needs a model with at most ",
+                                       SaturatingCost::kMaxMotors,
+                                       " motors, as it compares 3^motors sets of torques, got ",
+                                       model.torqueDim(), ": set mpc/cost to distance"));
   }
   if (model.info().support_states.cols() < 2) {
     throw std::invalid_argument("mpc/cost " + options.cost +

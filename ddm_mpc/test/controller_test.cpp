@@ -171,9 +171,6 @@ TEST(EpsilonGreedy, RefusesOptionsOutOfRange) {
   }
   EXPECT_THROW(EpsilonGreedy(nullptr, explore(0.99), TrialId()), std::invalid_argument);
   EXPECT_THROW(EpsilonGreedy(policy, explore(0.5, 0), TrialId()), std::invalid_argument);
-  EpsilonGreedy::Options options;
-  options.max_torque = Eigen::Vector2d(1.0, nan);
-  EXPECT_THROW(EpsilonGreedy(policy, options, TrialId()), std::invalid_argument);
 }
 
 constexpr int kNumSteps = 6;

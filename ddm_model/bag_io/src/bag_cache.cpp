@@ -4,8 +4,9 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <stdexcept>
 #include <system_error>
+
+#include "bag_texts.h"
 
 namespace ddm {
 
@@ -27,7 +28,7 @@ const BagContent& BagCache::contentOf(const std::string& path) {
 }
 
 DataSet BagCache::read(const std::vector<std::string>& paths, const KeepGoing& keep_going) {
-  if (paths.empty()) throw std::runtime_error("no bag was given: there is nothing to learn from");
+  if (paths.empty()) refuseBag("no bag was given: there is nothing to learn from");
   for (auto entry = entries_.begin(); entry != entries_.end();) {
     const bool wanted = std::find(paths.begin(), paths.end(), entry->first) != paths.end();
     entry = wanted ? std::next(entry) : entries_.erase(entry);
@@ -43,10 +44,9 @@ DataSet BagCache::read(const std::vector<std::string>& paths, const KeepGoing& k
     const BagContent& content = contentOf(path);
     const bool fits = content.camera == camera || options_.ofOthers();
     if (!fits || content.data.torqueDim() != torque_dim) {
-      throw std::runtime_error("bag " + path + " (" + content.camera + ", " +
-                               std::to_string(content.data.torqueDim()) + " torque(s)) and bag " +
-                               paths.front() + " (" + camera + ", " + std::to_string(torque_dim) +
-                               " torque(s)) are of different robots: train on one of them");
+      refuseBag("bag ", path, " (", content.camera, ", ", content.data.torqueDim(),
+                " torque(s)) and bag ", paths.front(), " (", camera, ", ", torque_dim,
+                " torque(s)) are of different robots: train on one of them");
     }
     different.require(path, content);
     data.append(content.data);

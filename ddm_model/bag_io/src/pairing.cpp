@@ -107,12 +107,10 @@ void requireRate(const Pairs& pairs, const std::vector<ros::Time>& times, double
               " apart: stamp images in the camera, and look for images that are lost on the way");
   }
   const double multiple = std::max(1.0, std::floor(dt / apart));
-  std::ostringstream text;
-  text.precision(3);
-  text << "its images come every " << apart << " s, which does not fit data_set/dt = " << dt
-       << ": set it (--dt) to a multiple, such as " << multiple * apart << " or "
-       << (multiple + 1.0) * apart;
-  refuseBag(text.str());
+  refuseBag("its images come every ", secondsText(apart),
+            ", which does not fit data_set/dt = ", secondsText(dt),
+            ": set it (--dt) to a multiple, such as ", secondsText(multiple * apart), " or ",
+            secondsText((multiple + 1.0) * apart));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "ddm_common/image_codec.h"
 
 #include <cv_bridge/cv_bridge.h>
+#include <ddm_common/option_checks.h>
 #include <ddm_common/plain_file.h>
 #include <sensor_msgs/image_encodings.h>
 
@@ -16,7 +17,6 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
-#include <sstream>
 #include <stdexcept>
 #include <vector>
 
@@ -55,16 +55,19 @@ const std::map<std::string, std::string>& acceptedEncodings() {
   return accepted;
 }
 
-[[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument("image: " + what); }
+template <class... Parts>
+[[noreturn]] void refuse(const Parts&... parts) {
+  throw std::invalid_argument(textOf("image: ", parts...));
+}
 
 void requireSize(int size) {
   if (size < 1 || size > kMaxSize) {
-    refuse("size must lie in [1, " + std::to_string(kMaxSize) + "], got " + std::to_string(size));
+    refuse("size must lie in [1, ", kMaxSize, "], got ", size);
   }
 }
 
 std::string extent(const sensor_msgs::Image& image) {
-  return std::to_string(image.width) + " x " + std::to_string(image.height) + " " + image.encoding;
+  return textOf(image.width, " x ", image.height, " ", image.encoding);
 }
 
 bool isYuv422(const std::string& encoding) {
@@ -82,31 +85,29 @@ std::string checkedEncoding(const sensor_msgs::Image& image) {
   if (found == acceptedEncodings().end()) {
     std::string known;
     for (const auto& entry : acceptedEncodings()) known += " " + entry.first;
-    refuse("unknown encoding '" + image.encoding + "', known are" + known +
+    refuse("unknown encoding '", image.encoding, "', known are", known,
            ": record one of them, for instance with image_proc");
   }
   if (image.width < 1 || image.height < 1 || image.width > kMaxSize || image.height > kMaxSize) {
-    refuse("width and height must lie in [1, " + std::to_string(kMaxSize) + "], got " +
-           extent(image));
+    refuse("width and height must lie in [1, ", kMaxSize, "], got ", extent(image));
   }
   const std::string& encoding = found->second;
   const std::size_t channels = isYuv422(encoding) ? 2 : encodings::numChannels(encoding);
   const std::size_t row_bytes = image.width * depthBytes(encoding) * channels;
   if (image.step < row_bytes) {
-    refuse("step must be at least " + std::to_string(row_bytes) + " bytes for " + extent(image) +
-           ", got " + std::to_string(image.step));
+    refuse("step must be at least ", row_bytes, " bytes for ", extent(image), ", got ", image.step);
   }
   const std::size_t data_bytes = std::size_t{image.step} * image.height;
   if (image.data.size() != data_bytes) {
-    refuse("data must hold step * height = " + std::to_string(data_bytes) + " bytes for " +
-           extent(image) + ", got " + std::to_string(image.data.size()));
+    refuse("data must hold step * height = ", data_bytes, " bytes for ", extent(image), ", got ",
+           image.data.size());
   }
   // OpenCV returns a black image for a mosaic that is smaller than its filter.
   if (encodings::isBayer(encoding) && (image.width < 3 || image.height < 3)) {
-    refuse("a Bayer mosaic needs at least 3 x 3 pixels, got " + extent(image));
+    refuse("a Bayer mosaic needs at least 3 x 3 pixels, got ", extent(image));
   }
   if (isYuv422(encoding) && image.width % 2 != 0) {
-    refuse("YUV 4:2:2 needs an even width, got " + extent(image));
+    refuse("YUV 4:2:2 needs an even width, got ", extent(image));
   }
   return encoding;
 }
@@ -117,10 +118,8 @@ void requireUnitRange(const cv::Mat& grey) {
     for (int col = 0; col < grey.cols; ++col) {
       const Real value = grey.at<Real>(row, col);
       if (value >= Real{0} && value <= Real{1}) continue;  // false for NaN
-      std::ostringstream out;
-      out << "float grey values must lie in [0, 1], got " << value << " at row " << row
-          << ", column " << col << "; scale them, for instance a depth, before they are recorded";
-      refuse(out.str());
+      refuse("float grey values must lie in [0, 1], got ", value, " at row ", row, ", column ", col,
+             "; scale them, for instance a depth, before they are recorded");
     }
   }
 }
@@ -164,10 +163,8 @@ cv::Mat cropped(const cv::Mat& grey, const ImageCrop& crop) {
   const cv::Rect rectangle(crop.x, crop.y, width, height);
   if (crop.x < 0 || crop.y < 0 || width < 1 || height < 1 ||
       (rectangle & cv::Rect(0, 0, grey.cols, grey.rows)) != rectangle) {
-    refuse("the crop of " + std::to_string(width) + " x " + std::to_string(height) +
-           " pixels from column " + std::to_string(crop.x) + ", row " + std::to_string(crop.y) +
-           " on must lie within the image's " + std::to_string(grey.cols) + " x " +
-           std::to_string(grey.rows));
+    refuse("the crop of ", width, " x ", height, " pixels from column ", crop.x, ", row ", crop.y,
+           " on must lie within the image's ", grey.cols, " x ", grey.rows);
   }
   return grey(rectangle);
 }
@@ -175,12 +172,6 @@ cv::Mat cropped(const cv::Mat& grey, const ImageCrop& crop) {
 cv::Mat centralSquare(const cv::Mat& grey) {
   const int side = std::min(grey.cols, grey.rows);
   return grey(cv::Rect((grey.cols - side) / 2, (grey.rows - side) / 2, side, side));
-}
-
-double greyScale(int depth) {
-  if (depth == CV_8U) return 1.0;
-  if (depth == CV_16U) return 1.0 / 257.0;
-  return 255.0;
 }
 
 /// Whether a JPEG is truncated; OpenCV fills missing parts with grey. The search for the end marker
@@ -216,9 +207,11 @@ std::vector<std::uint8_t> decodeImage(const sensor_msgs::Image& image, int size,
   } catch (const std::invalid_argument&) {  // from refuse()
     throw;
   } catch (const std::exception& e) {
-    refuse("cannot convert " + extent(image) + " to grey: " + e.what());
+    refuse("cannot convert ", extent(image), " to grey: ", e.what());
   }
-  const double scale = greyScale(grey.depth());
+  const double scale = grey.depth() == CV_8U    ? 1.0
+                       : grey.depth() == CV_16U ? 1.0 / 257.0
+                                                : 255.0;  // float
   grey.convertTo(grey, CV_64F);
   std::vector<std::uint8_t> out;
   out.reserve(grey.total());
@@ -241,9 +234,8 @@ sensor_msgs::Image unpacked(const sensor_msgs::CompressedImage& image) {
   } catch (const cv::Exception&) {  // the message below is more helpful than OpenCV's
   }
   if (pixels.empty() || (pixels.depth() != CV_8U && pixels.depth() != CV_16U)) {
-    refuse(std::to_string(image.data.size()) + " bytes of format '" + image.format +
-           "' cannot be unpacked" + (cut_short ? ", since they end early" : "") +
-           ": record JPEG or PNG");
+    refuse(image.data.size(), " bytes of format '", image.format, "' cannot be unpacked",
+           cut_short ? ", since they end early" : "", ": record JPEG or PNG");
   }
   const char* encoding = pixels.depth() == CV_16U ? "bgr16" : "bgr8";
   return *cv_bridge::CvImage(image.header, encoding, pixels).toImageMsg();
@@ -253,10 +245,9 @@ sensor_msgs::Image encodeImage(const std::vector<std::uint8_t>& grey, int size,
                                const ros::Time& stamp, const std::string& frame_id) {
   requireSize(size);
   const auto side = static_cast<std::uint32_t>(size);
-  if (grey.size() != std::size_t{side} * side) {
-    refuse("an image of size " + std::to_string(size) + " needs " +
-           std::to_string(std::size_t{side} * side) + " grey values, got " +
-           std::to_string(grey.size()));
+  const std::size_t count = std::size_t{side} * side;
+  if (grey.size() != count) {
+    refuse("an image of size ", size, " needs ", count, " grey values, got ", grey.size());
   }
   sensor_msgs::Image image;
   image.header.stamp = stamp;

@@ -3,6 +3,7 @@
 #include "ddm_common/param_reader.h"
 
 #include <algorithm>
+#include <boost/algorithm/string/join.hpp>
 #include <stdexcept>
 #include <utility>
 
@@ -25,8 +26,7 @@ const std::set<std::string> kOrigin = {"version", "renderer", "goal"};
 /// " (did you mean horizon? known keys: horizon, epsilon)"
 template <class Names>
 std::string hint(const std::string& name, const char* kind, const Names& known) {
-  std::string list;
-  for (const std::string& one : known) list += (list.empty() ? "" : ", ") + one;
+  const std::string list = boost::algorithm::join(known, ", ");
   const std::size_t limit = std::min<std::size_t>(3, (name.size() + 1) / 2);
   const std::string nearest = nearestName(name, known, limit);
   const std::string question = nearest.empty() ? "" : "did you mean " + nearest + "? ";

@@ -195,11 +195,10 @@ void requireFreeName() {
   std::optional<NodeAddress> address;
   while ((address = addressOf(name)) && askNode(*address, "getPid")) {
     if (std::chrono::steady_clock::now() > end) {
-      throw std::runtime_error(
-          "node " + name + " is running already, at " + address->host + ":" +
-          std::to_string(address->port) +
+      throw std::runtime_error(textOf(
+          "node ", name, " is running already, at ", address->host, ":", address->port,
           ", and the ROS master would end that one: end its launch first, or set ROS_NAMESPACE or "
-          "ROS_MASTER_URI for this one");
+          "ROS_MASTER_URI for this one"));
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
   }

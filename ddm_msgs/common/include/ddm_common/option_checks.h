@@ -68,17 +68,13 @@ class OptionChecks {
   /// @param ok  condition; write it so that NaN makes it false
   template <class Value>
   void require(bool ok, const std::string& key, const std::string& rule, const Value& value) {
-    if (ok) return;
-    std::ostringstream problem;
-    problem << block_ << '/' << key << " must " << rule << ", got " << value;
-    problems_.push_back(problem.str());
+    if (!ok) problems_.push_back(textOf(block_, '/', key, " must ", rule, ", got ", value));
   }
 
   template <class Value>
   void requireWithin(const std::string& key, Value value, Value lowest, Value highest) {
-    std::ostringstream rule;
-    rule << "lie in [" << lowest << ", " << highest << "]";
-    require(value >= lowest && value <= highest, key, rule.str(), value);
+    require(value >= lowest && value <= highest, key,
+            textOf("lie in [", lowest, ", ", highest, "]"), value);
   }
   void requireAtLeast(const std::string& key, int value, int lowest) {
     require(value >= lowest, key, "be >= " + std::to_string(lowest), value);
