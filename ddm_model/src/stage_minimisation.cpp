@@ -43,20 +43,13 @@ struct Range {
 };
 
 Range freeParameters(const Networks<float>& networks, Stage::Free free) {
-  const Eigen::Index num_params = networks.numParams();
-  const Eigen::Index num_auto_encoder = num_params - networks.f().numParams();
-  const int layers_of_f = networks.f().numLayers();
-  const int layers_of_auto_encoder =
-      networks.encoder().numLayers() + networks.decoder().numLayers();
-  switch (free) {
-    case Stage::Free::kAutoEncoder:
-      return {0, num_auto_encoder, 0, layers_of_auto_encoder};
-    case Stage::Free::kPredictor:
-      return {num_auto_encoder, num_params - num_auto_encoder, layers_of_auto_encoder, layers_of_f};
-    case Stage::Free::kAll:
-      break;
-  }
-  return {0, num_params, 0, layers_of_auto_encoder + layers_of_f};
+  const Range auto_encoder{0, networks.numOfAutoEncoder(), 0,
+                           networks.encoder().numLayers() + networks.decoder().numLayers()};
+  const Range f{auto_encoder.size, networks.f().numParams(), auto_encoder.num_layers,
+                networks.f().numLayers()};
+  if (free == Stage::Free::kAutoEncoder) return auto_encoder;
+  if (free == Stage::Free::kPredictor) return f;
+  return {0, auto_encoder.size + f.size, 0, auto_encoder.num_layers + f.num_layers};
 }
 
 /// Scaled objective of one stage in float32, as a function of the free parameters or of coordinates

@@ -266,7 +266,7 @@ TEST_F(PlansWithSaturatingCost, TheProposalKeepsPlansThatAreNoBetterYet) {
 /// Features that hardly move, so that all support states have a weight in each of the others.
 TEST(CostToGo, TakesAtMostHalfAGigabyteForTheMostMotorsAndSupportStates) {
   RandomModelOptions options;
-  options.torque_dim = CostToGo::kMaxMotors;
+  options.torque_dim = SaturatingCost::kMaxMotors;
   options.gain = 0.1;
   const Ddm random = randomModel(options);
   ModelInfo info;

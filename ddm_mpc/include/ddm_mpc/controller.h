@@ -34,7 +34,7 @@ class MpcPolicy : public Policy {
   /// @param model  trained model, not null
   /// @throws std::invalid_argument if max_torque exceeds that of the model or has a wrong number of
   ///         entries. With mpc/cost time, also if the model has fewer than two support states or
-  ///         more than CostToGo::kMaxMotors motors
+  ///         more than SaturatingCost::kMaxMotors motors
   MpcPolicy(std::shared_ptr<const Ddm> model, const MpcOptions& options);
 
   void startTrial(const TrialId& id) override;

@@ -41,18 +41,14 @@ namespace ddm {
 /// other side may be 0.2 spreads away, and the arm then stays there.
 class CostToGo {
  public:
-  static constexpr int kHoldSteps = SaturatingCost::kHoldSteps;  ///< m, of the torques [-]
+  static constexpr int kHoldSteps = SaturatingCost::kHoldSteps;  ///< m [-]
   /// Width of the cost in V [-]. With a narrower cost, few support states are near enough to the
   /// goal, and V is almost the same everywhere.
   static constexpr double kWidth = 0.25;
   /// Smallest width of the cost of the steps of a plan [-], for plants whose features change slowly.
   static constexpr double kSmallestWidthInPlan = 0.15;
-  /// Three motors have 3^3 combinations of torques for each of up to 1000 support states, each with
-  /// up to 1000 weights: up to half a gigabyte and two seconds. Each further motor triples both.
-  static constexpr int kMaxMotors = SaturatingCost::kMaxMotors;
 
-  /// @param model       has at least two support states and at most kMaxMotors motors; must outlive
-  ///                    the object
+  /// @param model       as for SaturatingCost; must outlive the object
   /// @param max_torque  of each motor [N m]  [torque_dim]
   /// @pre as above (checked by eigen_assert, i.e. in debug builds only)
   CostToGo(const Ddm& model, const Eigen::VectorXd& max_torque);

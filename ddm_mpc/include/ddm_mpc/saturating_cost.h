@@ -17,7 +17,9 @@ namespace ddm {
 /// also knows the torques that searches for a plan compare.
 class SaturatingCost {
  public:
-  /// Searches compare 3^motors combinations of torques.
+  /// Searches compare 3^motors combinations of torques. For three motors, CostToGo has 3^3
+  /// combinations for each of up to 1000 support states, each with up to 1000 weights: up to half a
+  /// gigabyte and two seconds. Each further motor triples both.
   static constexpr int kMaxMotors = 3;
   static constexpr int kHoldSteps = 4;  ///< steps for which searches hold torques [-]
 
