@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstring>
 #include <optional>
-#include <sstream>
 #include <string>
 
 namespace ddm {
@@ -39,9 +38,10 @@ void checkContent(const BagContent& content, int image_size) {
 /// Reads the bytes as a bag.
 void bagFile(const std::uint8_t* data, std::size_t size) {
   constexpr int kImageSize = 4;
-  std::istringstream bag(std::string(reinterpret_cast<const char*>(data), size));
+  static const testing::MemoryFile bag;
+  bag.write(data, size);
   accepts<std::runtime_error>(
-      [&] { checkContent(readBagBytes(&bag, kImageSize, BagOptions()), kImageSize); });
+      [&] { checkContent(readBag(bag.path(), kImageSize, BagOptions()), kImageSize); });
 }
 
 /// Corrects the magic number, the size and the checksum in the header of a model file ("DDMMODEL" |

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <boost/algorithm/string/predicate.hpp>
 #include <boost/algorithm/string/trim.hpp>
+#include <cerrno>
+#include <cstring>
 
 namespace ddm {
 namespace {
@@ -172,10 +174,10 @@ std::string decompress(Record chunk) {
 
 }  // namespace
 
-BagFile::BagFile(std::istream* in) : in_(in) {
-  in_->clear();
-  in_->seekg(0, std::ios::end);
-  const auto size = static_cast<std::uint64_t>(std::max<std::streamoff>(0, in_->tellg()));
+BagFile::BagFile(const std::string& path) : in_(path, std::ios::binary) {
+  if (!in_) refuseBag(std::strerror(errno));
+  in_.seekg(0, std::ios::end);
+  const auto size = static_cast<std::uint64_t>(std::max<std::streamoff>(0, in_.tellg()));
   requireBag(read(0, std::min<std::uint64_t>(kFrontSize, size)));
   const std::string front = read(sizeof(kMagic) - 1, std::min<std::uint64_t>(kMaxBagHeader, size));
   MessageBytes front_bytes(front.data(), front.size());
@@ -213,9 +215,9 @@ BagFile::BagFile(std::istream* in) : in_(in) {
 /// @return bytes [begin, end) of the file
 std::string BagFile::read(std::uint64_t begin, std::uint64_t end) {
   std::string bytes(end - begin, '\0');
-  in_->clear();
-  in_->seekg(static_cast<std::streamoff>(begin));
-  if (!in_->read(&bytes[0], static_cast<std::streamsize>(bytes.size())))
+  in_.clear();
+  in_.seekg(static_cast<std::streamoff>(begin));
+  if (!in_.read(&bytes[0], static_cast<std::streamsize>(bytes.size())))
     refuseDamage("cannot be read");
   return bytes;
 }

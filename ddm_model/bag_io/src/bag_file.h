@@ -7,8 +7,8 @@
 #include <ros/time.h>
 
 #include <cstdint>
+#include <fstream>
 #include <functional>
-#include <istream>
 #include <map>
 #include <set>
 #include <stdexcept>
@@ -41,9 +41,8 @@ struct BagMessage {
 /// All functions throw std::runtime_error with the fault and the remedy.
 class BagFile {
  public:
-  /// Reads the index.
-  /// @param in  binary and seekable; must outlive the object
-  explicit BagFile(std::istream* in);
+  /// Opens a bag and reads its index.
+  explicit BagFile(const std::string& path);
 
   /// @return all connections, by their numbers in the file
   const std::map<std::uint32_t, BagConnection>& connections() const { return connections_; }
@@ -59,7 +58,7 @@ class BagFile {
  private:
   std::string read(std::uint64_t begin, std::uint64_t end);
 
-  std::istream* in_;
+  std::ifstream in_;
   std::uint64_t index_ = 0;  // position of the index, after the last chunk
   std::uint64_t bytes_behind_index_ = 0;
   // Connections in each chunk, by position of the chunk.

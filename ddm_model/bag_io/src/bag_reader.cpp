@@ -12,10 +12,7 @@
 
 #include <algorithm>
 #include <boost/algorithm/string/predicate.hpp>
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <utility>
 
@@ -176,13 +173,6 @@ Image greyOf(const sensor_msgs::Image& image, int image_size, const BagOptions& 
                      done ? ImageCrop() : ImageCrop{crop[0], crop[1], crop[2], crop[3]});
 }
 
-BagContent readBagBytes(std::istream* in, int image_size, const BagOptions& options) {
-  BagFile bag(in);
-  const BagTopics topics = findTopics(bag, options);
-  const Pairs pairs = readPairs(&bag, topics, options);
-  return contentOf(pairs, decodeImages(&bag, topics, pairs, image_size, options), image_size);
-}
-
 BagContent readBag(const std::string& path, int image_size, const BagOptions& options) {
   namespace fs = std::filesystem;
   try {
@@ -198,9 +188,10 @@ BagContent readBag(const std::string& path, int image_size, const BagOptions& op
     }
     if (fs::is_directory(path)) refuseBag("is a folder: name the bags in it");
     requirePlainFile(path);
-    std::ifstream in(path, std::ios::binary);
-    if (!in) refuseBag(std::strerror(errno));
-    return readBagBytes(&in, image_size, options);
+    BagFile bag(path);
+    const BagTopics topics = findTopics(bag, options);
+    const Pairs pairs = readPairs(&bag, topics, options);
+    return contentOf(pairs, decodeImages(&bag, topics, pairs, image_size, options), image_size);
   } catch (const std::exception& e) {
     refuseBag("bag ", path, ": ", e.what());
   }

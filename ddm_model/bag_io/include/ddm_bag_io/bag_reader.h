@@ -6,7 +6,6 @@
 #include <sensor_msgs/Image.h>
 
 #include <cstdint>
-#include <istream>
 #include <map>
 #include <string>
 #include <unordered_map>
@@ -91,10 +90,6 @@ struct BagContent {
 ///         together that only one is taken; two nodes publish torques or images at the same time;
 ///         the clock of the recording was set back to a time that it had before
 BagContent readBag(const std::string& path, int image_size, const BagOptions& options);
-
-/// Reads a bag from any stream; error messages do not name the bag.
-/// @param in  binary and seekable
-BagContent readBagBytes(std::istream* in, int image_size, const BagOptions& options);
 
 /// Detects bags that share images: one file under two paths, copies, or overlapping recordings.
 class DifferentBags {
