@@ -84,15 +84,6 @@ Connections outgoingConnections(const std::string& node) {
   return out;
 }
 
-/// The nodes that publish a topic, without this node.
-std::set<std::string> othersThatPublish(const NodesByTopic& publishers, const std::string& topic) {
-  const auto found = publishers.find(topic);
-  if (found == publishers.end()) return {};
-  std::set<std::string> nodes = found->second;
-  nodes.erase(ros::this_node::getName());
-  return nodes;
-}
-
 }  // namespace
 
 std::optional<XmlRpc::XmlRpcValue> askMaster(const std::string& method,
@@ -174,7 +165,7 @@ std::vector<std::string> missingConnections(const std::vector<std::string>& topi
 }
 
 std::vector<std::string> sharedTopics(const std::vector<std::string>& topics) {
-  const auto nodes = publishersAndSubscribers();
+  auto nodes = publishersAndSubscribers();
   if (!nodes) {
     ROS_WARN(
         "the ROS master does not answer: connected nodes keep working, new nodes cannot connect");
@@ -182,7 +173,8 @@ std::vector<std::string> sharedTopics(const std::vector<std::string>& topics) {
   }
   std::vector<std::string> shared;
   for (const std::string& topic : topics) {
-    const std::set<std::string> publishers = othersThatPublish(nodes->first, topic);
+    std::set<std::string>& publishers = nodes->first[topic];
+    publishers.erase(ros::this_node::getName());
     if (publishers.size() < 2) continue;
     shared.push_back(topic + ": " + boost::algorithm::join(publishers, ", "));
   }
