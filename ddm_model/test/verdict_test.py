@@ -16,13 +16,12 @@ class GoodData:
     def __init__(self, num_frames=400):
         random = np.random.RandomState(1)
         half = num_frames // 2
-        self.model = types.SimpleNamespace(info={"frames": 500}, support_states=np.zeros((0, 2)))
-        self.options = {"pca_dim": 50, "feature_dim": 2}
+        self.model = types.SimpleNamespace(info={"frames": 500}, options={"pca_dim": 50, "feature_dim": 2},
+                                           support_states=np.zeros((0, 2)), goal_feature=np.array([0.0, 1.0]))
         self.max_torque = np.array([6.0])
         self.variation = 0.1
         angle = np.linspace(0.0, 6.3, num_frames)
         self.features = np.column_stack([np.sin(angle), np.cos(angle)])
-        self.goal_feature = np.array([0.0, 1.0])
         self.torques = random.uniform(-6.0, 6.0, (num_frames, 1))
         self.bags = {"camera": ["51x51 mono8"] * 2, "interval_s": np.full(2, 0.2)}
         self.unpaired = {"images without torque": np.zeros((2, 0))}
@@ -52,8 +51,8 @@ FAULTS = [
     ("Predictions beat repeating the last frame", lambda data: data.errors.update(
         rmse=0.95 * data.errors["rmse_repeat"], rmse_mean_torque=1.9 * data.errors["rmse_repeat"])),
     ("The model responds to the torque", lambda data: data.errors.update(rmse_mean_torque=1.001 * data.errors["rmse"])),
-    ("The goal has been seen", lambda data: setattr(data, "goal_feature", np.array(FAR_GOAL))),
-    ("The goal has been seen", lambda data: setattr(data, "goal_feature", None))]
+    ("The goal has been seen", lambda data: setattr(data.model, "goal_feature", np.array(FAR_GOAL))),
+    ("The goal has been seen", lambda data: setattr(data.model, "goal_feature", None))]
 
 
 def check_of(data, name):
@@ -89,7 +88,7 @@ def test_the_goal_may_have_been_seen_in_bags_that_are_not_these():
         data = GoodData()
         if not with_bags:
             data.bags = data.features = None
-        data.goal_feature = np.array(FAR_GOAL)
+        data.model.goal_feature = np.array(FAR_GOAL)
         for seen in (1.5, 0.4):
             data.model.support_states = np.array([[0.0, -1.0], [0.0, seen]])
             assert check_of(data, "The goal has been seen").ok == (seen == 1.5)

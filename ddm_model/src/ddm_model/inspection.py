@@ -69,7 +69,7 @@ def figures_of(data):
             yield ("Error by step", report_figures.draw_errors(data),
                    "Over %d predictions of each length. Predictions must stay below the grey curve to be of use."
                    % data.errors["num_predictions"][0])
-    if data.options["feature_dim"] >= 2:
+    if data.model.options["feature_dim"] >= 2:
         yield ("Feature plane", report_figures.draw_plane(data),
                "Images that the model decodes at 9 x 9 features, and where the frames lie. Neighbouring images must look "
                "alike, and motions be paths without jumps.")

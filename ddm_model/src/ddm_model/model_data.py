@@ -227,22 +227,14 @@ class ModelData:
             steps=np.tile(steps, len(shown)), **numbered("z", np.concatenate(predicted[list(shown.values())]).T))
 
     @property
-    def options(self):
-        """The block `model` of the model's configuration."""
-        return self.model.options
-
-    @property
-    def goal_feature(self):
-        """z_ref, or None if the model has no goal image."""
-        return self.model.goal_feature
-
-    @property
     def max_torque(self):
         """Torque limit of each motor [N m]."""
-        return np.broadcast_to(self.options["max_torque"], (self.model.torque_dim,))
+        return np.broadcast_to(self.model.options["max_torque"], (self.model.torque_dim,))
 
     def decode_plane(self, features):
         """Decodes features with given first two components [N x 2]. All other components are those of the goal feature,
         or 0 without a goal."""
-        goal = np.zeros(self.options["feature_dim"]) if self.goal_feature is None else self.goal_feature
+        goal = self.model.goal_feature
+        if goal is None:
+            goal = np.zeros(self.model.options["feature_dim"])
         return grey(self.model.decode(np.column_stack([features, np.tile(goal[2:], (len(features), 1))])))

@@ -119,8 +119,8 @@ def draw_plane(data):
     if data.features is not None:
         axes.scatter(data.features[:, 0], data.features[:, 1], s=9, color=YELLOW, edgecolors="black",
                      linewidths=0.25, label="frames of these bags", zorder=2)
-    if data.goal_feature is not None:
-        axes.scatter(*data.goal_feature[:2], marker="*", s=190, color=VERMILLION, edgecolors="black", linewidths=0.6,
+    if data.model.goal_feature is not None:
+        axes.scatter(*data.model.goal_feature[:2], marker="*", s=190, color=VERMILLION, edgecolors="black", linewidths=0.6,
                      label="goal", zorder=3)
     if axes.get_legend_handles_labels()[0]:
         axes.legend(loc="upper left", bbox_to_anchor=(1.02, 1.0))  # beside the images

@@ -112,14 +112,14 @@ def judge_features(data, check):
     kept = kept_share(data, "pca_rms")
     check("Enough components, for such images", kept >= KEPT_BY_PCA,
           "the model's %s principal components keep %s of what differs between these images" % (
-              data.options["pca_dim"], percent(kept)),
+              data.model.options["pca_dim"], percent(kept)),
           "at least %s" % percent(KEPT_BY_PCA),
           "If the spectrum falls slowly, raise model/pca_dim (it needs as many frames, and more) or crop the image to the "
           "robot; if these bags look other than those learned from, train with them, too.")
     kept = kept_share(data, "reconstruction_rms")
     check("Features hold the image", kept >= KEPT_BY_FEATURES,
           "reconstructions from %s features keep %s of what differs between the images" % (
-              data.options["feature_dim"], percent(kept)),
+              data.model.options["feature_dim"], percent(kept)),
           "at least %s: what a feature does not hold, no plan can steer" % percent(KEPT_BY_FEATURES),
           "Train with more starts (training/num_starts) or iterations; wider encoder and decoder; model/feature_dim must be at "
           "least the number of joints that move.")
@@ -161,7 +161,7 @@ def judge_predictions(data, check):
 
 def judge_frames(data, check):
     """Check of the model alone."""
-    learned, components = data.model.info["frames"], data.options["pca_dim"]
+    learned, components = data.model.info["frames"], data.model.options["pca_dim"]
     check("Enough frames to learn from", learned >= FRAMES_PER_COMPONENT * components,
           "%d frames learned from, %d principal components" % (learned, components),
           "at least %g frames for each component; 10 are comfortable" % FRAMES_PER_COMPONENT,
@@ -170,13 +170,13 @@ def judge_frames(data, check):
 
 def judge_goal(data, check):
     """Check of the goal against all states that the model keeps and, if there are bags, their frames."""
-    ok, figure = data.goal_feature is not None, "the model has no goal image"
+    ok, figure = data.model.goal_feature is not None, "the model has no goal image"
     features = data.model.support_states if data.features is None else data.features
     if ok:
         figure = "the model has a goal image"
     if ok and len(features) > 0:
         seen = np.concatenate([data.model.support_states, features])
-        near = np.min(np.linalg.norm(seen - data.goal_feature, axis=1)) / max(spread_of(features), 1e-12)
+        near = np.min(np.linalg.norm(seen - data.model.goal_feature, axis=1)) / max(spread_of(features), 1e-12)
         ok = near <= GOAL_DISTANCE
         figure = ("of all frames here and of those that the model keeps, the nearest to the goal is %.2f spreads of the "
                   "features away" % near)
