@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "control_health.h"
 
+#include <ddm_common/option_checks.h>
+
 #include <algorithm>
 
 namespace ddm {
@@ -16,8 +18,8 @@ double ageOf(const ros::SteadyTime& time) { return (ros::SteadyTime::now() - tim
 ControlHealth::ControlHealth(const ros::NodeHandle& nh, const ros::NodeHandle& pnh)
     : last_report_(ros::SteadyTime::now()), updater_(nh, pnh) {
   updater_.setHardwareID("none");
-  updater_.add("camera", [this](Status& status) { reportStream("image", &images_, &status); });
-  updater_.add("torque", [this](Status& status) { reportStream("torque", &torques_, &status); });
+  updater_.add("camera", [this](Status& status) { reportStream("image", images_, &status); });
+  updater_.add("torque", [this](Status& status) { reportStream("torque", torques_, &status); });
   updater_.add("plan", [this](Status& status) { reportPlans(&status); });
   updater_.add("model", [this](Status& status) { reportModel(&status); });
   // Updater::update() uses simulated time, which may run a hundred times faster than real time.
@@ -33,7 +35,7 @@ void ControlHealth::expect(Expected expected) {
 
 void ControlHealth::count(Stream* stream) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  ++stream->total;
+  ++stream->count;
   stream->last = ros::SteadyTime::now();
 }
 
@@ -48,9 +50,8 @@ void ControlHealth::countPlan(const Plan& plan) {
 
 void ControlHealth::setModel(const ddm_msgs::Model& model) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  model_ = model;
-  model_.data.clear();
-  model_came_ = ros::SteadyTime::now();
+  model_ = textOf("model ", model.id, " of trial ", model.trial, ", learned from ", model.frames,
+                  " images");
 }
 
 void ControlHealth::onTick() {
@@ -59,50 +60,36 @@ void ControlHealth::onTick() {
   last_report_ = ros::SteadyTime::now();
   updater_.force_update();
   plans_ = Plans();
+  images_.count = torques_.count = 0;
 }
 
-void ControlHealth::reportStream(const char* name, Stream* stream, Status* status) const {
-  const double rate = static_cast<double>(stream->total - stream->reported) / period_;
-  stream->reported = stream->total;
-  const double silence = ageOf(std::max(stream->last, expected_since_));
+void ControlHealth::reportStream(const char* name, const Stream& stream, Status* status) const {
+  const double silence = ageOf(std::max(stream.last, expected_since_));
   if (expected_ == Expected::kImage && silence > kLate) {
     status->summaryf(Status::WARN, "no %s for %.1f s of a trial", name, silence);
   } else {
-    status->summaryf(Status::OK, "%.1f %ss/s", rate, name);
+    status->summaryf(Status::OK, "%.1f %ss/s", stream.count / period_, name);
   }
-  status->add("total", stream->total);
-  if (stream->total > 0) status->addf("age of the newest [s]", "%.3f", ageOf(stream->last));
 }
 
 void ControlHealth::reportPlans(Status* status) const {
-  const double mean_ms = plans_.count > 0 ? 1e3 * plans_.sum_s / plans_.count : 0.0;
   if (plans_.failed > 0) {
     status->summaryf(plans_.failed < plans_.count ? Status::WARN : Status::ERROR,
                      "%d of %d plans failed", plans_.failed, plans_.count);
   } else {
-    status->summaryf(Status::OK, "%d plans, %.2f ms each", plans_.count, mean_ms);
+    const double mean_s = plans_.count > 0 ? plans_.sum_s / plans_.count : 0.0;
+    status->summaryf(Status::OK, "%d plans, %.2f ms each, at most %.2f ms, %d cut short",
+                     plans_.count, 1e3 * mean_s, 1e3 * plans_.max_s, plans_.cut);
   }
-  status->add("plans", plans_.count);
-  status->add("failed", plans_.failed);
-  status->add("cut short", plans_.cut);
-  if (plans_.count > 0) status->addf("longest solve time [ms]", "%.3f", 1e3 * plans_.max_s);
 }
 
 void ControlHealth::reportModel(Status* status) const {
   const double waited = ageOf(expected_since_);
   if (expected_ == Expected::kModel && waited > kLate) {
     status->summaryf(Status::WARN, "a trial has been waiting for its model for %.1f s", waited);
-  } else if (model_.id.empty()) {
-    status->summary(Status::OK, "no model yet");
   } else {
-    status->summaryf(Status::OK, "model of trial %u", model_.trial);
+    status->summary(Status::OK, model_);
   }
-  if (model_.id.empty()) return;
-  status->add("id", model_.id);
-  status->add("images learned from", model_.frames);
-  status->addf("V_R [grey^2]", "%.4g", model_.v_r);
-  status->addf("V_P [grey^2]", "%.4g", model_.v_p);
-  status->addf("age [s]", "%.1f", ageOf(model_came_));
 }
 
 }  // namespace ddm

@@ -6,8 +6,8 @@
 #include <diagnostic_updater/diagnostic_updater.h>
 #include <ros/ros.h>
 
-#include <cstdint>
 #include <mutex>
+#include <string>
 
 #include "ddm_mpc/planner.h"
 
@@ -33,8 +33,7 @@ class ControlHealth {
   using Status = diagnostic_updater::DiagnosticStatusWrapper;
 
   struct Stream {
-    std::uint64_t total = 0;
-    std::uint64_t reported = 0;  ///< value of total in the last report
+    int count = 0;  ///< since the last report
     ros::SteadyTime last;
   };
   struct Plans {
@@ -47,20 +46,19 @@ class ControlHealth {
 
   void count(Stream* stream);
   void onTick();
-  void reportStream(const char* name, Stream* stream, Status* status) const;
+  void reportStream(const char* name, const Stream& stream, Status* status) const;
   void reportPlans(Status* status) const;
   void reportModel(Status* status) const;
 
-  std::mutex mutex_;  // guards the members up to model_came_
+  std::mutex mutex_;  // guards the members up to model_
   Expected expected_ = Expected::kNothing;
   ros::SteadyTime expected_since_;
   ros::SteadyTime last_report_;
   double period_ = 0.0;  ///< time between the last two reports [s]
   Stream images_;
   Stream torques_;
-  Plans plans_;            ///< since the last report
-  ddm_msgs::Model model_;  ///< without its data; empty id: none received
-  ros::SteadyTime model_came_;
+  Plans plans_;  ///< since the last report
+  std::string model_ = "no model yet";
 
   diagnostic_updater::Updater updater_;
   ros::SteadyTimer timer_;
