@@ -104,8 +104,7 @@ cv::Mat drawPanels(const std::vector<Panel>& panels, int image_size) {
   for (int i = 0; i < count; ++i) {
     const int left = i * (size + kPanelSeparator);
     if (i > 0) drawing.colRange(left - kPanelSeparator, left).setTo(separator_grey);
-    cv::putText(drawing, panels[i].caption, {left + 6, size + kPanelCaption - 7},
-                cv::FONT_HERSHEY_SIMPLEX, 0.5, caption_grey, 1, cv::LINE_AA);
+    drawText(panels[i].caption, {left + 6, size + kPanelCaption - 7}, caption_grey, &drawing);
     if (panels[i].image.empty()) continue;
     Image pixels = panels[i].image;  // cv::Mat requires mutable pixels
     const cv::Mat image(image_size, image_size, CV_8UC1, pixels.data());

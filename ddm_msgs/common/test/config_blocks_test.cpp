@@ -47,9 +47,7 @@ TEST(ExpandHome, ReplacesATildeAtTheStartOfAPathOnly) {
   EXPECT_EQ(expandHome("~/x y"), "/home/me/x y");
   EXPECT_EQ(expandHome("~"), "/home/me");
   EXPECT_EQ(expandHome("--out=~/x"), "--out=/home/me/x");
-  EXPECT_EQ(expandHome("~root/x").substr(0, 1), "/");
-  for (const std::string text :
-       {"", "x", "./~/x", "a~", "~nobody_has_this_name/x", "--out", "--out=a~/x", "-~"}) {
+  for (const std::string text : {"", "x", "./~/x", "a~", "~root/x", "--out", "--out=a~/x", "-~"}) {
     EXPECT_EQ(expandHome(text), text);
   }
   ::setenv("HOME", before.c_str(), /*overwrite=*/1);
