@@ -88,7 +88,7 @@ TEST(FitGp, AveragesOverNoiseWithFewerCentresThanSamples) {
 
 TEST(FitGp, HasAtMostSoManyCentres) {
   const Eigen::VectorXd theta = fit(exampleOf(50, 1), 1, /*max_centres=*/10);
-  EXPECT_EQ(GpMean<double>::ofSize(3, 2, theta.size()).numCentres(), 10);
+  EXPECT_EQ(theta.size(), GpMean<double>(3, 2, 10).numParams());
 }
 
 TEST(WithoutOutliers, KeepsTheRestAsItIs) {

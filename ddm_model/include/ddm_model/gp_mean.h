@@ -34,7 +34,6 @@ class GpMean {
                   (num_params - linear.numParams()) / (input_dim + output_dim));
   }
 
-  Eigen::Index numCentres() const { return num_centres_; }
   /// @return number of parameters: 1 / l, S, b, all centres, all weights (column-major)
   Eigen::Index numParams() const {
     return numBeforeCentres() + num_centres_ * (input_dim_ + output_dim_);

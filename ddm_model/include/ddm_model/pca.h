@@ -29,8 +29,6 @@ class Blur {
   void apply(Images<Scalar>* images) const {
     map<Scalar>(G_.cast<Scalar>(), images);
   }
-  /// @return G; empty if there is no blur  [image_size x image_size]
-  const Eigen::MatrixXf& matrix() const { return G_; }
   /// Applies the transposed map Y -> G^T Y G.
   /// @param images  one image per column  [D x N]
   template <class Scalar>
