@@ -51,7 +51,6 @@ void minimiseRestart(const RestartProblem& problem, Progress* progress, Restart*
   };
   auto networks = std::make_unique<Problem>(problem.model, problem.parts.front());
   if (terms.v_p) networks->objective.requirePredictions();
-  restart->initial_cost = networks->cost(restart->theta, terms);
   for (size_t i = 0; i + 1 < stages.size(); ++i) {
     Problem all(problem.model, problem.parts.back());
     if (!lowered(i, minimiseFrom(stages[i], problem.training, &all, progress, restart))) {

@@ -67,7 +67,6 @@ struct Problem {
 /// One training: its initial weights and its result.
 struct Restart {
   Eigen::VectorXd theta;  ///< initial weights, then current weights  [P]
-  double initial_cost = 0.0;
   /// Objective on the last part of the data so far. Infinite if a stage did not lower it.
   double error = std::numeric_limits<double>::infinity();
   std::string message{};  ///< how the solver ended, or why there is no error

@@ -32,7 +32,6 @@ struct Joined {
   std::vector<Eigen::VectorXd> thetas;  // of each restart; empty: no restart has finite errors
   Eigen::MatrixXd Z;                    // [feature_dim of all x M]
   double v_r = 0.0, v_p = 0.0;          // of the best restart [score^2]
-  double final_cost = 0.0;              // of the best restart
 };
 
 Joined join(const std::vector<Restart>& kept, const Terms& terms, Problem* problem) {
@@ -43,7 +42,6 @@ Joined join(const std::vector<Restart>& kept, const Terms& terms, Problem* probl
     if (joined.thetas.empty()) {
       joined.v_r = value.v_r;
       joined.v_p = value.v_p;
-      joined.final_cost = problem->objective.weight() * value.of(terms);
     }
     const Eigen::MatrixXd Z = problem->objective.features().cast<double>();
     joined.Z.conservativeResize(joined.Z.rows() + Z.rows(), Z.cols());
@@ -122,8 +120,6 @@ TrainingResult trainUnlessCancelled(const DataSet& data, const ModelOptions& mod
   trained.feature_spread = spreadOf(joined.Z);
   trained.support_states =
       supportStates(joined.Z.cast<float>(), data, trained_model.order, kMaxSupportStates);
-  result.initial_cost = kept.front().initial_cost;
-  result.final_cost = joined.final_cost;
   result.model.emplace(trained_model, data.imageSize(), data.torqueDim(), pca, theta, data.goal(),
                        trained);
   return result;

@@ -34,10 +34,8 @@ struct TrainingResult {
   bool cancelled = false;    ///< the callback cancelled the training
   std::string message;       ///< why there is no model, or why the solver ended
   int iterations = 0;
-  int evaluations = 0;        ///< evaluations of the objective with its gradient
-  double initial_cost = 0.0;  ///< scaled objective of the best restart at its initial weights
-  double final_cost = 0.0;    ///< the same at the end; 0 without a model
-  double seconds = 0.0;       ///< wall time [s]
+  int evaluations = 0;   ///< evaluations of the objective with its gradient
+  double seconds = 0.0;  ///< wall time [s]
 };
 
 /// Trains a model on all data from new initial weights (a warm start from the last optimum gets
