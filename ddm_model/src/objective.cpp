@@ -87,20 +87,19 @@ typename JointObjective<Scalar>::Value JointObjective<Scalar>::evaluate(const Ve
     d_theta->setZero(theta.size());
     for (const Lane& lane : lanes_) *d_theta += 2 * lane.d_theta;
   }
-  const auto addDecay = [&](const Mlp<Scalar>& net, auto part_of) {
-    double sum = 0.0;  // sum of squared weights, without biases
-    for (int layer = 0; layer < net.numLayers(); ++layer) {
-      const auto weights = net.weights(part_of(theta.data()), layer);
+  Eigen::Index begin = 0;  // of a network in theta
+  for (const Mlp<Scalar>* net : {&networks_.encoder(), &networks_.decoder(), &networks_.f()}) {
+    double sum = 0.0;  // of squared weights, without biases
+    for (int layer = 0; layer < net->numLayers(); ++layer) {
+      const auto weights = net->weights(theta.data() + begin, layer);
       sum += static_cast<double>(weights.squaredNorm());
       if (d_theta == nullptr || terms.weight_decay == 0.0) continue;
-      net.weights(part_of(d_theta->data()), layer) +=
+      net->weights(d_theta->data() + begin, layer) +=
           2 * static_cast<Scalar>(terms.weight_decay) * weights;
     }
     value.v_w += sum;
-  };
-  addDecay(networks_.encoder(), [this](auto of) { return networks_.encoderOf(of); });
-  addDecay(networks_.decoder(), [this](auto of) { return networks_.decoderOf(of); });
-  addDecay(networks_.f(), [this](auto of) { return networks_.predictorOf(of); });
+    begin += net->numParams();
+  }
   return value;
 }
 
