@@ -3,8 +3,6 @@
 import os
 import re
 import shutil
-import struct
-import zlib
 
 import numpy as np
 import pytest
@@ -51,14 +49,9 @@ def test_images_features_and_torques_of_another_shape_are_refused(made):
 def test_a_damaged_model_is_named(made, tmp_path):
     with open(made.model, "rb") as stream:
         data = stream.read()
-    content = data[len("DDMMODEL") + struct.calcsize("<IQI"):]
-    mean = ddm_model.load(made.model).arrays["pca_mean"].tobytes()
-    infinite = content.replace(mean, struct.pack("<f", np.nan) + mean[4:])
     path = tmp_path / "model.ddm"
     for damage, word in ((data[:-1], "damaged"), (data[:5], "is not a DDM model"), (data[:12], "cut short"),
-                         (data[:-9] + b"x" + data[-8:], "damaged"), (data[:8] + b"\x63" + data[9:], "format version 99"),
-                         (b"DDMMODEL" + struct.pack("<IQI", ddm_model.model.VERSION, len(infinite), zlib.crc32(infinite)) + infinite,
-                          "pca_mean must be finite")):
+                         (data[:-9] + b"x" + data[-8:], "damaged"), (data[:8] + b"\x63" + data[9:], "format version 99")):
         path.write_bytes(damage)
         with pytest.raises(ddm_model.ModelFileError, match="model %s: .*%s" % (re.escape(str(path)), word)):
             ddm_model.load(str(path))
