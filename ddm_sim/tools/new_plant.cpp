@@ -188,10 +188,6 @@ void printCheck(const mjModel& model, const PlantProposal& proposal, const Plant
       warn("the range of " + joint.name + " is only " + rangeOf(joint) +
            ": MJCF has degrees unless the file has <compiler angle=\"radian\"/>");
     }
-    if (!joint.shownInPart()) continue;
-    warn("the camera shows " + joint.name + " from " + number(joint.shown_lower, 3) + " to " +
-         number(joint.shown_upper, 3) + " m of " + rangeOf(joint) +
-         ", or the robot would be tiny: limit the joint in the model file to what you need");
   }
 }
 

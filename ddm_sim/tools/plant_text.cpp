@@ -79,12 +79,12 @@ std::string rangeOf(const ModelJoint& joint) {
 std::string plantText(const std::string& model, const std::string& plant_file,
                       const PlantProposal& proposal) {
   const MujocoOptions& options = proposal.options;
-  Texts joints, motors, shown;
+  Texts joints, motors, endless;
   for (const ModelJoint& joint : proposal.joints) {
     joints.push_back(joint.name + (joint.isHinge() ? " [rad], " : " [m], ") + rangeOf(joint));
-    if (joint.isHinge() || (joint.limited && !joint.shownInPart())) continue;
-    shown.push_back(joint.name + " from " + number(joint.shown_lower, 3) + " to " +
-                    number(joint.shown_upper, 3) + " m");
+    if (joint.isHinge() || joint.limited) continue;
+    endless.push_back(joint.name + " from " + number(joint.lower, 3) + " to " +
+                      number(joint.upper, 3) + " m");
   }
   for (const std::string& name : proposal.motors) {
     const auto joint = std::find_if(proposal.joints.begin(), proposal.joints.end(),
@@ -128,9 +128,9 @@ std::string plantText(const std::string& model, const std::string& plant_file,
             (has_hinges ? "hinge [deg]" : "joint [m]"));
   write("camera_position", list(options.look.position),
         "The camera sees all poses" +
-            (shown.empty()
+            (endless.empty()
                  ? ""
-                 : " of " + join(shown, ", ") + "; farther away the robot leaves the image") +
+                 : " of " + join(endless, ", ") + "; farther away the robot leaves the image") +
             ". For a camera of an MJCF file, write `camera: NAME` instead of these two keys");
   write("camera_look_at", list(options.look.look_at), "The point in the middle of the image");
   write("supersampling", std::to_string(options.look.supersampling),

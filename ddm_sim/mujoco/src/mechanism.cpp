@@ -16,33 +16,32 @@ Mechanism::Mechanism(const std::shared_ptr<const MujocoModel>& model)
     : model_(model), data_(makeData(model->get())) {
   requirePositionsAndRates(*model);
   const mjModel& m = model->get();
+  const Eigen::Matrix3Xd corners = movingCorners(m, place(qpos0()));
+  if (corners.cols() > 0) {
+    size_ = (corners.rowwise().maxCoeff() - corners.rowwise().minCoeff()).maxCoeff();
+  }
   for (int i = 0; i < m.njnt; ++i) {
     ModelJoint joint;
     joint.name = model->name(mjOBJ_JOINT, i);
     joint.kind = m.jnt_type[i] == mjJNT_HINGE ? JointKind::kAngle : JointKind::kLength;
     joint.limited = m.jnt_limited[i] != 0;
     joint.effort = model->effortLimit(joint.name).value_or(0.0);
-    // showSlidesInPart() sets the range of a slide.
-    const double reach = joint.isHinge() ? kPi : 0.0;
+    const double reach = joint.isHinge() ? kPi : size_;
     joint.lower = joint.limited ? m.jnt_range[2 * i] : m.qpos0[i] - reach;
     joint.upper = joint.limited ? m.jnt_range[2 * i + 1] : m.qpos0[i] + reach;
-    joint.shown_lower = joint.lower;
-    joint.shown_upper = joint.upper;
     joints_.push_back(joint);
   }
-  showSlidesInPart();
 }
 
-VectorXd Mechanism::zero() const {
-  return coupled(Eigen::Map<const VectorXd>(model_->get().qpos0, model_->get().njnt));
+VectorXd Mechanism::qpos0() const {
+  return Eigen::Map<const VectorXd>(model_->get().qpos0, model_->get().njnt);
 }
 
 VectorXd Mechanism::draw(std::mt19937_64* engine) const {
   VectorXd position(static_cast<Eigen::Index>(joints_.size()));
   for (Eigen::Index i = 0; i < position.size(); ++i) {
     const ModelJoint& joint = joints_[static_cast<std::size_t>(i)];
-    position[i] =
-        std::uniform_real_distribution<double>(joint.shown_lower, joint.shown_upper)(*engine);
+    position[i] = std::uniform_real_distribution<double>(joint.lower, joint.upper)(*engine);
   }
   return coupled(position);
 }
@@ -74,7 +73,7 @@ VectorXd Mechanism::coupled(VectorXd position) const {
   for (Eigen::Index i = 0; i < position.size(); ++i) {
     const ModelJoint& joint = joints_[static_cast<std::size_t>(i)];
     if (joint.turnsFreely()) continue;
-    position[i] = std::clamp(position[i], joint.shown_lower, joint.shown_upper);
+    position[i] = std::clamp(position[i], joint.lower, joint.upper);
   }
   return position;
 }
@@ -83,8 +82,8 @@ VectorXd Mechanism::atLimits(VectorXd position) const {
   for (Eigen::Index i = 0; i < position.size(); ++i) {
     const ModelJoint& joint = joints_[static_cast<std::size_t>(i)];
     if (!joint.limited) continue;
-    const bool low = position[i] - joint.shown_lower < joint.shown_upper - position[i];
-    position[i] = low ? joint.shown_lower : joint.shown_upper;
+    const bool low = position[i] - joint.lower < joint.upper - position[i];
+    position[i] = low ? joint.lower : joint.upper;
   }
   return coupled(position);
 }
@@ -165,40 +164,6 @@ VectorXd Mechanism::followed(VectorXd position, double sign) const {
     }
   }
   return position;
-}
-
-/// Limits the range of slides that the camera shows. The size of the robot is the largest side of
-/// the space that the robot needs with its slides at rest. A slide that is much longer than this
-/// size, or endless, would make the robot tiny in the image.
-void Mechanism::showSlidesInPart() {
-  // Number of poses from which the size of the robot is computed.
-  constexpr int kPoses = 200;
-  constexpr double kWideSlide = 4.0;  // a longer slide is shown in part [sizes of the robot]
-  std::mt19937_64 engine(0);
-  Eigen::Vector3d low = Eigen::Vector3d::Constant(1e9), high = -low;
-  for (int i = 0; i < kPoses; ++i) {
-    VectorXd position = draw(&engine);
-    for (std::size_t k = 0; k < joints_.size(); ++k) {
-      if (!joints_[k].isHinge()) position[static_cast<Eigen::Index>(k)] = model_->get().qpos0[k];
-    }
-    const Eigen::Matrix3Xd corners = movingCorners(model_->get(), place(position));
-    if (corners.cols() == 0) continue;
-    low = low.cwiseMin(corners.rowwise().minCoeff());
-    high = high.cwiseMax(corners.rowwise().maxCoeff());
-  }
-  size_ = std::max(1e-3, (high - low).maxCoeff());
-  for (std::size_t k = 0; k < joints_.size(); ++k) {
-    ModelJoint& joint = joints_[k];
-    const double wide = joint.upper - joint.lower;
-    if (joint.isHinge() || (joint.limited && wide <= kWideSlide * size_)) continue;
-    const double zero = std::clamp<double>(model_->get().qpos0[k], joint.lower, joint.upper);
-    if (!joint.limited) {
-      joint.lower = zero - size_;
-      joint.upper = zero + size_;
-    }
-    joint.shown_lower = std::max(joint.lower, zero - size_);
-    joint.shown_upper = std::min(joint.upper, zero + size_);
-  }
 }
 
 }  // namespace ddm

@@ -22,23 +22,22 @@ class Mechanism {
 
   const std::vector<ModelJoint>& joints() const { return joints_; }
 
-  /// Scale for motions of a joint: 1 rad for a hinge, half the size of the robot [m] for a slide.
-  double unit(int joint) const { return joints_[joint].isHinge() ? 1.0 : 0.5 * size_; }
+  /// Scale for motions of a joint: 1 rad for a hinge, the size of the robot [m] for a slide.
+  double unit(int joint) const { return joints_[joint].isHinge() ? 1.0 : size_; }
 
   /// Pose qpos0 of the file, as coupled().
-  Eigen::VectorXd zero() const;
+  Eigen::VectorXd zero() const { return coupled(qpos0()); }
 
-  /// Draws a random pose from the range that the camera should show.
+  /// Draws a random pose within the ranges of the joints.
   Eigen::VectorXd draw(std::mt19937_64* engine) const;
 
   /// Whether the position of a joint is a function of another joint, as with <mimic>.
   bool follows(int joint) const;
 
-  /// Sets the joints that follow other joints, and moves a position into the limits; a slide stays
-  /// in the part that the camera shows.
+  /// Sets the joints that follow other joints, and moves a position into the ranges.
   Eigen::VectorXd coupled(Eigen::VectorXd position) const;
 
-  /// The position with each limited joint at the nearer end of its shown range, as coupled().
+  /// The position with each limited joint at the nearer limit, as coupled().
   Eigen::VectorXd atLimits(Eigen::VectorXd position) const;
 
   /// Whether shapes of the robot and its surroundings overlap, if the model has contacts.
@@ -70,12 +69,12 @@ class Mechanism {
  private:
   Eigen::VectorXd withFollowers(Eigen::VectorXd position) const;
   Eigen::VectorXd followed(Eigen::VectorXd position, double sign) const;
-  void showSlidesInPart();
+  Eigen::VectorXd qpos0() const;
 
   std::shared_ptr<const MujocoModel> model_;
   DataPointer data_;
   std::vector<ModelJoint> joints_;
-  double size_ = 1.0;  // [m]
+  double size_ = 1.0;  // largest side of the box around the moving shapes at qpos0 [m]
 };
 
 /// Corners of the boxes around all drawn shapes that a joint can move, in the world [m]  [3 x 8 n].

@@ -114,8 +114,8 @@ PlantCheck checkPlant(const PlantProposal& proposal, const Plant& plant) {
     for (std::size_t i = 0; i < 4; ++i) {
       VectorXd moved = proposal.poses[i];
       double& position = moved[static_cast<Eigen::Index>(k)];
-      const double quarter = 0.25 * (joint.shown_upper - joint.shown_lower);
-      position += position + quarter > joint.shown_upper ? -quarter : quarter;
+      const double quarter = 0.25 * (joint.upper - joint.lower);
+      position += position + quarter > joint.upper ? -quarter : quarter;
       seen = std::max(seen, change(proposal.poses[i], moved));
     }
     if (seen == 0) check.unseen.push_back(joint.name);

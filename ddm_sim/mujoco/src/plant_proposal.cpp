@@ -23,7 +23,7 @@ using Eigen::VectorXd;
 using Texts = std::vector<std::string>;
 
 constexpr int kNumPoses = 200;  // poses that the camera has to see
-// Acceleration by a proposed torque [rad/s^2], slides [half sizes/s^2]
+// Acceleration by a proposed torque [rad/s^2], slides [sizes/s^2]
 constexpr double kAcceleration = 10;
 constexpr double kTooStrong = 4.0;  // a file's limit above this many proposed torques is not used
 // Largest motion between two images for the choice of dt [rad]
@@ -142,7 +142,7 @@ class Proposer {
       const double inside = 2.0 * start_std[static_cast<std::size_t>(i)];
       for (double* value : {&start[i], &goal[i]}) {
         if (!joint.turnsFreely()) {
-          *value = std::clamp(*value, joint.shown_lower + inside, joint.shown_upper - inside);
+          *value = std::clamp(*value, joint.lower + inside, joint.upper - inside);
         }
         *value = roundedPosition(*value, joint.isHinge());
       }
@@ -171,9 +171,9 @@ class Proposer {
   VectorXd elsewhere(VectorXd position) const {
     for (const Motor& motor : motors_) {
       const ModelJoint& joint = out_.joints[static_cast<std::size_t>(motor.joint)];
-      const double quarter = 0.25 * (joint.shown_upper - joint.shown_lower);
+      const double quarter = 0.25 * (joint.upper - joint.lower);
       double& value = position[motor.joint];
-      value += joint.limited && value + quarter > joint.shown_upper ? -quarter : quarter;
+      value += joint.limited && value + quarter > joint.upper ? -quarter : quarter;
       value = roundedPosition(value, joint.isHinge());
     }
     return mechanism_.coupled(position);
@@ -271,7 +271,7 @@ class Proposer {
       askForTorque();
       out_.reasons["max_torque"] +=
           textOf("; lowered, because random torques made a joint faster than ", kFastest,
-                 " rad/s (slides: half sizes of the robot per s), faster than a fall");
+                 " rad/s (slides: sizes of the robot per s), faster than a fall");
     }
     const double timestep = timestepOf(*model_, out_.options);
     double dt = 0.02;
@@ -282,7 +282,7 @@ class Proposer {
     out_.options.dt = std::max(timestep * frames, timestep * std::ceil(1e-3 / timestep));
     out_.reasons["dt"] = "under random torques and in a fall the fastest joint moves by up to " +
                          textOf(std::setprecision(2), fast * out_.options.dt) +
-                         " rad (slides: half sizes of the robot) between two images";
+                         " rad (slides: sizes of the robot) between two images";
   }
 
   void proposeSuccess() {
@@ -291,7 +291,7 @@ class Proposer {
     for (const ModelJoint& joint : out_.joints) {
       if (joint.isHinge()) continue;
       slides.push_back(joint.name);
-      shortest = std::min(shortest, joint.shown_upper - joint.shown_lower);
+      shortest = std::min(shortest, joint.upper - joint.lower);
     }
     const bool has_hinges = slides.size() < out_.joints.size();
     double tolerance = 10.0;

@@ -22,15 +22,11 @@ struct ModelJoint {
   /// Limits of the file. A joint without limits has the range of the proposed poses.
   double lower = 0.0;
   double upper = 0.0;
-  /// Part of the range that the camera shows. Equal to the range for all joints but long slides.
-  double shown_lower = 0.0;
-  double shown_upper = 0.0;
   /// Limit of a motor at this joint in the file [N m or N]; 0: the file has no limit.
   double effort = 0.0;
 
   bool isHinge() const { return kind == JointKind::kAngle; }
   bool turnsFreely() const { return isHinge() && !limited; }
-  bool shownInPart() const { return limited && (shown_lower > lower || shown_upper < upper); }
 };
 
 struct PlantProposal {
