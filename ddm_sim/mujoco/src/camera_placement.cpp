@@ -45,23 +45,13 @@ Vector3d halfSides(const mjModel& m, int geom) {
   return half.cast<double>();
 }
 
-/// Drawn geoms that a joint can move. If no such geom is drawn, returns all geoms that a joint can
-/// move.
+/// Drawn geoms that a joint can move.
 std::vector<int> movingGeoms(const mjModel& m) {
-  std::vector<int> all, drawn;
+  std::vector<int> geoms;
   for (int i = 0; i < m.ngeom; ++i) {
-    if (m.body_weldid[m.geom_bodyid[i]] == 0 || m.geom_type[i] == mjGEOM_PLANE) continue;
-    all.push_back(i);
-    if (isDrawnAndMoves(m, i)) drawn.push_back(i);
+    if (isDrawnAndMoves(m, i)) geoms.push_back(i);
   }
-  return drawn.empty() ? all : drawn;
-}
-
-bool moves(const mjModel& m, int joint, int body) {
-  for (; body > 0; body = m.body_parentid[body]) {
-    if (body == m.jnt_bodyid[joint]) return true;
-  }
-  return false;
+  return geoms;
 }
 
 /// For each direction: share of a joint's motion that is visible, minimum over all joints
@@ -73,16 +63,16 @@ Eigen::VectorXd motionSeen(const mjModel& m, const Mechanism& mechanism,
   Eigen::MatrixXd seen = Eigen::MatrixXd::Zero(num_directions, m.njnt);
   Eigen::RowVectorXd all = Eigen::RowVectorXd::Zero(m.njnt);
   const std::vector<int> geoms = movingGeoms(m);
+  // Velocity of a corner for a rate of 1 of each joint.
+  Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor> velocities(3, m.njnt);
   for (const Eigen::VectorXd& pose : poses) {
     const mjData& data = mechanism.place(pose);
     const Matrix3Xd corners = movingCorners(m, data);
     for (Eigen::Index i = 0; i < corners.cols(); ++i) {
       const int body = m.geom_bodyid[geoms[static_cast<std::size_t>(i / 8)]];
+      mj_jac(&m, &data, velocities.data(), nullptr, corners.col(i).data(), body);
       for (int joint = 0; joint < m.njnt; ++joint) {
-        if (!moves(m, joint, body)) continue;
-        const Vector3d axis = Eigen::Map<const Vector3d>(data.xaxis + 3 * joint);
-        const Vector3d arm = corners.col(i) - Eigen::Map<const Vector3d>(data.xanchor + 3 * joint);
-        const Vector3d velocity = m.jnt_type[joint] == mjJNT_SLIDE ? axis : axis.cross(arm);
+        const Vector3d velocity = velocities.col(joint);
         all[joint] += velocity.norm();
         for (Eigen::Index k = 0; k < num_directions; ++k) {
           seen(k, joint) += velocity.cross(directions[static_cast<std::size_t>(k)]).norm();
@@ -102,10 +92,7 @@ std::vector<Vector3d> directionsOf(const mjModel& m, const mjData& placed) {
     Vector3d axis = Eigen::Map<const Vector3d>(placed.xaxis + 3 * i);
     axis = (axis.array().abs() < 1e-3).select(0.0, axis).normalized();
     for (const Vector3d& one : {axis, Vector3d(-axis)}) {
-      const bool from_below = one.z() < -0.5;
-      const bool known = std::any_of(directions.begin(), directions.end(),
-                                     [&](const Vector3d& x) { return (x - one).norm() < 1e-3; });
-      if (!from_below && !known) directions.push_back(one);
+      if (one.z() >= -0.5) directions.push_back(one);  // not from below
     }
   }
   for (const double elevation : {30.0, 60.0}) {
@@ -197,8 +184,8 @@ RenderOptions placedCamera(const std::shared_ptr<const MujocoModel>& model,
   if (corners.cols() == 0) {
     refuseModel(
         model->uri(),
-        " has no shape that a joint moves, so no image could show its pose: give the moving links "
-        "a <visual>, the moving bodies a <geom>");
+        " has no shape that a joint moves and that is not transparent, so no image could show its "
+        "pose: give the moving links a <visual>, the moving bodies a <geom>");
   }
   const std::vector<Vector3d> directions = directionsOf(m, mechanism.place(poses.front()));
   const Eigen::VectorXd seen = motionSeen(m, mechanism, poses, directions);
