@@ -1,4 +1,4 @@
-// Implements a model at rest: the ranges of its joints and the loads on them.
+// Implements Mechanism: the ranges of joints, the loads on them, and random motions.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mechanism.h"
 
@@ -11,6 +11,12 @@
 namespace ddm {
 
 using Eigen::VectorXd;
+
+VectorXd atRest(const VectorXd& position) {
+  VectorXd state = VectorXd::Zero(2 * position.size());
+  state.head(position.size()) = position;
+  return state;
+}
 
 Mechanism::Mechanism(const std::shared_ptr<const MujocoModel>& model)
     : model_(model), data_(makeData(model->get())) {
@@ -164,6 +170,41 @@ VectorXd Mechanism::followed(VectorXd position, double sign) const {
     }
   }
   return position;
+}
+
+double Mechanism::speedUnderRandomTorques(const MujocoOptions& options, std::size_t num_motors,
+                                          double share) const {
+  constexpr int kRuns = 8;
+  constexpr double kSeconds = 2.0;  // duration of a run [s]
+  constexpr double kHold = 0.3;     // time for which a random torque is constant [s]
+  const MujocoPhysics physics(model_, options);
+  const int n = physics.numJoints();
+  const double timestep = timestepOf(*model_, options);
+  const int hold = std::max(1, static_cast<int>(std::round(kHold / timestep)));
+  std::vector<double> speeds;
+  std::mt19937_64 engine(2);
+  for (int run = 0; run < kRuns; ++run) {
+    const std::vector<double>& pose = run % 2 == 0 ? options.start : options.goal;
+    VectorXd state = atRest(Eigen::Map<const VectorXd>(pose.data(), n));
+    for (double time = 0.0; time < kSeconds; time += hold * timestep) {
+      VectorXd torque(static_cast<Eigen::Index>(num_motors));
+      for (Eigen::Index i = 0; i < torque.size(); ++i) {
+        const double limit = share * options.max_torque[static_cast<std::size_t>(i)];
+        torque[i] = std::uniform_real_distribution<double>(-limit, limit)(engine);
+      }
+      const Eigen::MatrixXd states = physics.frames(state, torque, hold);
+      for (Eigen::Index k = 0; k < states.cols(); ++k) {
+        double fastest = 0.0;
+        for (int i = 0; i < n; ++i) {
+          fastest = std::max(fastest, std::abs(states(n + i, k)) / unit(i));
+        }
+        speeds.push_back(fastest);
+      }
+      state = states.rightCols(1);
+    }
+  }
+  std::sort(speeds.begin(), speeds.end());
+  return speeds[speeds.size() * 95 / 100];
 }
 
 }  // namespace ddm

@@ -1,17 +1,24 @@
-// Class Mechanism: a model at rest, with the ranges of its joints and the loads on them.
+// Class Mechanism: a model with the ranges of its joints, the loads on them, and random motions.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <memory>
 #include <random>
 #include <vector>
 
 #include "ddm_mujoco/mujoco_model.h"
+#include "ddm_mujoco/mujoco_options.h"
 #include "ddm_mujoco/plant_proposal.h"
 #include "load_model.h"
 
 namespace ddm {
+
+/// State of a mechanism at rest: positions and zero rates.
+/// @param position  of all joints  [n x 1]
+/// @return [2 n x 1]
+Eigen::VectorXd atRest(const Eigen::VectorXd& position);
 
 /// A model at rest. Use an object in one thread at a time. A position has one number for each joint
 /// [n x 1].
@@ -65,6 +72,14 @@ class Mechanism {
 
   /// Position with the largest potential energy of weight.
   Eigen::VectorXd highest(const std::vector<Eigen::VectorXd>& poses) const;
+
+  /// Simulates several runs under random torques from the start and from the goal of the options.
+  /// @param share  share of options.max_torque that the random torques reach
+  /// @return speed that the fastest joint exceeds in 5 % of the physics steps, in units of the
+  ///         joints per second, see unit()
+  /// @throws std::range_error if the simulation is unstable
+  double speedUnderRandomTorques(const MujocoOptions& options, std::size_t num_motors,
+                                 double share) const;
 
  private:
   Eigen::VectorXd withFollowers(Eigen::VectorXd position) const;

@@ -9,6 +9,7 @@
 #include "ddm_mujoco/mujoco_plant.h"
 #include "ddm_mujoco/plant_proposal.h"
 #include "ddm_sim/angles.h"
+#include "mechanism.h"
 
 namespace ddm {
 namespace {
@@ -62,20 +63,13 @@ void requireVisible(const std::shared_ptr<const MujocoModel>& model, const Mujoc
   constexpr int kDiffers = 4;  // above rounding errors and faint shadows [grey levels]
   const mjModel& m = model->get();
   const MujocoPlant plant(model, options);
-  const Eigen::VectorXd& start = plant.info().start;
+  const Mechanism mechanism(model);
   std::mt19937_64 engine(0);
   RenderedImage first;
   try {
-    first = plant.render(start);
+    first = plant.render(plant.info().start);
     for (int pose = 0; pose < kPoses; ++pose) {
-      Eigen::VectorXd state = start;
-      for (int i = 0; i < m.njnt; ++i) {
-        const double reach = m.jnt_type[i] == mjJNT_HINGE ? kPi : m.stat.extent;
-        const bool limited = m.jnt_limited[i] != 0;
-        const double from = limited ? m.jnt_range[2 * i] : start[i] - reach;
-        const double to = limited ? m.jnt_range[2 * i + 1] : start[i] + reach;
-        state[i] = std::uniform_real_distribution<double>(from, to)(engine);
-      }
+      const VectorXd state = atRest(mechanism.draw(&engine));
       if (numDifferent(first, plant.render(state), kDiffers) > 0) return;
     }
   } catch (const std::runtime_error&) {

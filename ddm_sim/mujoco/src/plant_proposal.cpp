@@ -13,7 +13,6 @@
 #include "mechanism.h"
 #include "motors.h"
 #include "mujoco_physics.h"
-#include "random_motion.h"
 
 namespace ddm {
 namespace {
@@ -240,7 +239,7 @@ class Proposer {
   double stableSpeed(double share) {
     constexpr int kHalvings = 4;
     const auto speed = [&] {
-      return speedUnderRandomTorques(model_, mechanism_, out_.options, motors_.size(), share);
+      return mechanism_.speedUnderRandomTorques(out_.options, motors_.size(), share);
     };
     for (int i = 0; i < kHalvings; ++i) {
       try {
