@@ -95,7 +95,7 @@ std::string plantText(const std::string& model, const std::string& plant_file,
   // Writes a key, and above it a comment with the meaning of the key and the reason for its value.
   const auto write = [&](const char* key, const std::string& value, const std::string& meaning) {
     const auto why = proposal.reasons.find(key);
-    const bool set = std::count(proposal.to_set.begin(), proposal.to_set.end(), key) > 0;
+    const bool set = proposal.to_set.count(key) > 0;
     out << comment((set ? "SET: " : "") + meaning +
                    (why == proposal.reasons.end() ? "" : " (" + why->second + ")") + ".")
         << "  " << key << ": " << value << "\n";

@@ -98,16 +98,6 @@ class Proposer {
     }
   }
 
-  bool gravityMatters() const {
-    double least = 1e300, most = -1e300;
-    for (const VectorXd& position : positions_) {
-      const double energy = mechanism_.energy(position, false);
-      least = std::min(least, energy);
-      most = std::max(most, energy);
-    }
-    return most - least > 1e-6 * std::max(1.0, std::abs(most));
-  }
-
   void proposeStartAndGoal() {
     const VectorXd zero = mechanism_.zero();
     // Away from an unstable equilibrium.
@@ -115,19 +105,17 @@ class Proposer {
     VectorXd rest = mechanism_.settled(nudged);
     const bool settles = rest != nudged && !mechanism_.overlaps(rest);
     if (!settles) rest = zero;
-    VectorXd start = rest, goal = rest;
-    if (gravityMatters()) {
-      std::vector<VectorXd> candidates = {rest};
-      for (VectorXd one : positions_) {  // a joint without load keeps its rest position
-        const VectorXd load = mechanism_.load(one, false);
-        for (Eigen::Index i = 0; i < one.size(); ++i) {
-          if (std::abs(load[i]) < 1e-9) one[i] = rest[i];
-        }
-        if (!mechanism_.overlaps(one)) candidates.push_back(one);
+    std::vector<VectorXd> candidates = {rest};
+    for (VectorXd one : positions_) {  // a joint without load keeps its rest position
+      const VectorXd load = mechanism_.load(one, false);
+      for (Eigen::Index i = 0; i < one.size(); ++i) {
+        if (std::abs(load[i]) < 1e-6) one[i] = rest[i];
       }
-      goal = mechanism_.highest(candidates);
-      if (mechanism_.overlaps(goal)) goal = rest;
+      if (!mechanism_.overlaps(one)) candidates.push_back(one);
     }
+    VectorXd start = rest, goal = mechanism_.highest(candidates);
+    const double lift = mechanism_.energy(goal, false) - mechanism_.energy(rest, false);
+    if (lift < 1e-6 || mechanism_.overlaps(goal)) goal = rest;  // without gravity, lift is rounding
     std::vector<double>& start_std = out_.options.start_std;
     start_std.clear();
     for (std::size_t i = 0; i < out_.joints.size(); ++i) {
@@ -163,7 +151,7 @@ class Proposer {
                                     : "pose 0 of the file";
     out_.reasons["goal"] = upright ? "Proposed: the highest pose"
                                    : "Proposed: the motors' joints a quarter of their way on";
-    out_.to_set.push_back("goal");
+    out_.to_set.insert("goal");
   }
 
   /// Moves each motor's joint by a quarter of its range from this position.
@@ -225,13 +213,9 @@ class Proposer {
                         (allowed > 0.0 ? textOf("allows ", std::setprecision(3), allowed,
                                                 ", far more than the joint needs")
                                        : motor.why_unknown));
-      if (allowed == 0.0) askForTorque();
+      if (allowed == 0.0) out_.to_set.insert("max_torque");
     }
     out_.reasons["max_torque"] = join(reasons, "; ");
-  }
-
-  void askForTorque() {
-    if (out_.to_set.back() != "max_torque") out_.to_set.push_back("max_torque");
   }
 
   /// Speed under random torques of up to this share of max_torque. Reduces the time step of the
@@ -267,7 +251,7 @@ class Proposer {
       fast = stableSpeed(1.0);
     }
     if (limits != first) {
-      askForTorque();
+      out_.to_set.insert("max_torque");
       out_.reasons["max_torque"] +=
           textOf("; lowered, because random torques made a joint faster than ", kFastest,
                  " rad/s (slides: sizes of the robot per s), faster than a fall");
@@ -306,7 +290,7 @@ class Proposer {
       out_.reasons["tolerance"] = "the positions of " + join(slides, ", ") +
                                   " do not count; to measure sites or links, add error_sites";
     }
-    out_.to_set.push_back("tolerance");
+    out_.to_set.insert("tolerance");
   }
 
   /// All proposed poses, initial state and goal. In addition, each pose with all limited joints at

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -127,7 +128,7 @@ TEST_F(Proposal, APendulumStartsHangingAndItsGoalIsUpright) {
   const PlantProposal proposal = propose(pendulum("<limit effort='5' velocity='1'/>"));
   EXPECT_EQ(proposal.options.start, std::vector<double>({0.0}));
   EXPECT_NEAR(std::abs(proposal.options.goal.at(0)), kPi, 1e-12);
-  EXPECT_EQ(proposal.to_set, Texts({"goal", "tolerance"}));
+  EXPECT_EQ(proposal.to_set, std::set<std::string>({"goal", "tolerance"}));
 }
 
 TEST_F(Proposal, ATorqueIsEstimatedFromTheWeightWhereTheFileHasNoLimitOrAHugeOne) {
@@ -156,7 +157,7 @@ TEST_F(Proposal, ATorqueThatMakesAJointFasterThanAFallIsLoweredAndMarked) {
   friction.insert(friction.find(" damping="), " friction='2'");
   const PlantProposal proposal = propose(friction);
   EXPECT_LT(proposal.options.max_torque.at(0), 8.0);
-  EXPECT_EQ(proposal.to_set, Texts({"goal", "max_torque", "tolerance"}));
+  EXPECT_EQ(proposal.to_set, std::set<std::string>({"goal", "max_torque", "tolerance"}));
   EXPECT_NE(proposal.reasons.at("max_torque").find("lowered"), std::string::npos);
 }
 

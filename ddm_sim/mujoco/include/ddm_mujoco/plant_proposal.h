@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -35,7 +36,7 @@ struct PlantProposal {
   std::vector<std::string> motors;  ///< joints that have a motor, also through the file's actuators
   /// For each key of the block `plant`: why the key has this value.
   std::map<std::string, std::string> reasons;
-  std::vector<std::string> to_set;     ///< keys that a person has to decide
+  std::set<std::string> to_set;        ///< keys that a person has to decide
   std::vector<Eigen::VectorXd> poses;  ///< random states at rest
 };
 
