@@ -10,8 +10,7 @@ from rooms import CHECKOUT
 from run_files import differences, expected_files, read_rows, read_yaml
 
 CART = ["--preset", "debug", "--plant", "ddm_cart/cart"]
-PLANT_KEYS = ["type", "max_torque", "dt", "start_std", "image_size", "mass", "friction", "track", "goal", "half_width",
-              "half_extent", "edge_softness"]
+PLANT_KEYS = ["type", "max_torque", "dt", "start_std", "image_size", "mass", "friction", "track", "goal"]
 
 
 @pytest.fixture(name="example", scope="module", autouse=True)

@@ -10,15 +10,16 @@
 
 namespace ddm_cart {
 
+constexpr double kHalfWidth = 0.3;     // half the width and height of the cart in the image [m]
+constexpr double kHalfExtent = 1.2;    // distance from the middle of the image to its edge [m]
+constexpr double kEdgeSoftness = 0.2;  // width over which grey falls from 1 to 0 [m]
+
 /// Block `plant`: the keys of every plant (max_torque is a force here [N]), then those of the cart.
 struct CartOptions : ddm::PlantOptions {
-  double mass = 1.0;           ///< m [kg]
-  double friction = 2.0;       ///< b, viscous friction [N s/m]
-  double track = 1.0;          ///< distance from the middle of the rail to each buffer [m]
-  double goal = 0.6;           ///< goal position of the cart [m]
-  double half_width = 0.3;     ///< half the width and height of the cart in the image [m]
-  double half_extent = 1.2;    ///< distance from the middle of the image to its edge [m]
-  double edge_softness = 0.2;  ///< width over which grey falls from 1 to 0 [m]
+  double mass = 1.0;      ///< m [kg]
+  double friction = 2.0;  ///< b, viscous friction [N s/m]
+  double track = 1.0;     ///< distance from the middle of the rail to each buffer [m]
+  double goal = 0.6;      ///< goal position of the cart [m]
 
   CartOptions() { max_torque = {2.0}; }
 
@@ -29,9 +30,6 @@ struct CartOptions : ddm::PlantOptions {
     visitor("friction", friction);
     visitor("track", track);
     visitor("goal", goal);
-    visitor("half_width", half_width);
-    visitor("half_extent", half_extent);
-    visitor("edge_softness", edge_softness);
   }
 
   std::vector<std::string> problems() const {
@@ -39,11 +37,8 @@ struct CartOptions : ddm::PlantOptions {
     plant.requirePositive("mass", mass);
     plant.requirePositive("friction", friction);
     plant.requirePositive("track", track);
-    plant.require(track <= half_extent, "track", "be at most plant/half_extent", track);
+    plant.require(track <= kHalfExtent, "track", "be at most 1.2, the edge of the image", track);
     plant.require(std::abs(goal) <= track, "goal", "lie within +- plant/track", goal);
-    plant.requirePositive("half_width", half_width);
-    plant.requirePositive("half_extent", half_extent);
-    plant.requirePositive("edge_softness", edge_softness);
     plant.add(PlantOptions::problems());
     return plant.problems();
   }
@@ -95,19 +90,19 @@ class Cart : public ddm::Plant {
     return Eigen::VectorXd::Constant(1, state[0]);
   }
 
-  /// Draws a white cart on black. Its brightness falls from 1 to 0 over edge_softness at the edges.
+  /// Draws a white cart on black. Its brightness falls from 1 to 0 over kEdgeSoftness at the edges.
   ddm::RenderedImage draw(const Eigen::VectorXd& state) const override {
     const int size = options_.image_size;
-    const double pixel = 2.0 * options_.half_extent / size;  // [m]
-    const auto inside = [this](double offset) {              // 1 inside the cart, 0 outside
-      const double depth = options_.half_width - std::abs(offset);
-      return std::min(std::max(depth / options_.edge_softness + 0.5, 0.0), 1.0);
+    const double pixel = 2.0 * kHalfExtent / size;  // [m]
+    const auto inside = [](double offset) {         // 1 inside the cart, 0 outside
+      const double depth = kHalfWidth - std::abs(offset);
+      return std::min(std::max(depth / kEdgeSoftness + 0.5, 0.0), 1.0);
     };
     std::vector<std::uint8_t> grey;
     for (int row = 0; row < size; ++row) {
       for (int column = 0; column < size; ++column) {
-        const double x = (column + 0.5) * pixel - options_.half_extent;
-        const double y = (row + 0.5) * pixel - options_.half_extent;
+        const double x = (column + 0.5) * pixel - kHalfExtent;
+        const double y = (row + 0.5) * pixel - kHalfExtent;
         const double level = inside(x - state[0]) * inside(y);
         grey.push_back(static_cast<std::uint8_t>(std::lround(255.0 * level)));
       }
