@@ -71,25 +71,17 @@ std::string list(const std::vector<double>& values) {
 }
 
 std::string rangeOf(const ModelJoint& joint) {
-  if (!joint.limited) return "no limits";
-  return number(joint.lower, 4) + " to " + number(joint.upper, 4) +
-         (joint.isHinge() ? " rad" : " m");
+  const std::string range = number(joint.lower, 4) + " to " + number(joint.upper, 4);
+  if (joint.limited) return range + (joint.isHinge() ? " rad" : " m");
+  return joint.isHinge() ? "no limits" : "no limits, in the image from " + range + " m";
 }
 
 std::string plantText(const std::string& model, const std::string& plant_file,
                       const PlantProposal& proposal) {
   const MujocoOptions& options = proposal.options;
-  Texts joints, motors, endless;
+  Texts joints;
   for (const ModelJoint& joint : proposal.joints) {
     joints.push_back(joint.name + (joint.isHinge() ? " [rad], " : " [m], ") + rangeOf(joint));
-    if (joint.isHinge() || joint.limited) continue;
-    endless.push_back(joint.name + " from " + number(joint.lower, 3) + " to " +
-                      number(joint.upper, 3) + " m");
-  }
-  for (const std::string& name : proposal.motors) {
-    const auto joint = std::find_if(proposal.joints.begin(), proposal.joints.end(),
-                                    [&](const ModelJoint& one) { return one.name == name; });
-    motors.push_back(name + (joint->isHinge() ? " [N m]" : " [N]"));
   }
   std::ostringstream out;
   // Writes a key, and above it a comment with the meaning of the key and the reason for its value.
@@ -111,8 +103,8 @@ std::string plantText(const std::string& model, const std::string& plant_file,
       << "\nplant:\n  type: mujoco\n";
   write("model", quoted(modelPath(model, plant_file)),
         "A relative path starts at the folder of this file");
-  write("motors", quoted(options.motors), "Motors: " + join(motors, ", "));
-  write("max_torque", list(options.max_torque), "The largest torque of each motor");
+  write("motors", quoted(options.motors), "Motors: " + join(proposal.motors, ", "));
+  write("max_torque", list(options.max_torque), "The largest torque of each motor [N m, slides N]");
   write("dt", number(options.dt, 12), "Seconds between two images");
   if (options.timestep > 0.0) {
     write("timestep", number(options.timestep, 12), "Time step of the physics [s]");
@@ -127,11 +119,8 @@ std::string plantText(const std::string& model, const std::string& plant_file,
         std::string("The goal is reached within this error of each ") +
             (has_hinges ? "hinge [deg]" : "joint [m]"));
   write("camera_position", list(options.look.position),
-        "The camera sees all poses" +
-            (endless.empty()
-                 ? ""
-                 : " of " + join(endless, ", ") + "; farther away the robot leaves the image") +
-            ". For a camera of an MJCF file, write `camera: NAME` instead of these two keys");
+        "The camera sees all poses. For a camera of an MJCF file, write `camera: NAME` instead of "
+        "these two keys");
   write("camera_look_at", list(options.look.look_at), "The point in the middle of the image");
   write("supersampling", std::to_string(options.look.supersampling),
         "Images are drawn so many times larger, then averaged, so that edges are soft");
