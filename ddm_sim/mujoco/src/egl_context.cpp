@@ -81,19 +81,15 @@ EglContext::EglContext() : display_(display()), context_(EGL_NO_CONTEXT) {
 
 EglContext::~EglContext() { eglDestroyContext(display_, context_); }
 
-std::string EglContext::renderer() const {
+std::string openGlRenderer() {
+  const EglContext context;
+  const EglContext::Current current(context);
   const auto get = openGl<const char* (*)(unsigned int)>("glGetString");
   const auto text = [get](unsigned int name) {
     const char* const part = get == nullptr ? nullptr : get(name);
     return std::string(part == nullptr ? "unknown" : part);
   };
   return text(kRenderer) + ", " + text(kVersion);
-}
-
-std::string openGlRenderer() {
-  const EglContext context;
-  const EglContext::Current current(context);
-  return context.renderer();
 }
 
 EglContext::Current::Current(const EglContext& context) : display_(context.display_) {

@@ -4,8 +4,6 @@
 
 #include <EGL/egl.h>
 
-#include <string>
-
 namespace ddm {
 
 /// Owns one OpenGL context. The context is current on a thread only while an object of class
@@ -31,10 +29,6 @@ class EglContext {
    private:
     EGLDisplay display_;
   };
-
-  /// GL_RENDERER and GL_VERSION: "llvmpipe (LLVM 15.0.6, 256 bits), 4.5 (...) Mesa 22.3.6".
-  /// @pre this context is current
-  std::string renderer() const;
 
  private:
   EGLDisplay display_;

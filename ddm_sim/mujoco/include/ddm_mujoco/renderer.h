@@ -90,8 +90,8 @@ class Renderer {
   std::mutex mutex_;
 };
 
-/// GL_RENDERER and GL_VERSION of the driver that draws in this process. Pixels differ between
-/// drivers.
+/// GL_RENDERER and GL_VERSION of the driver that draws in this process: "llvmpipe (LLVM 15.0.6, 256
+/// bits), 4.5 (...) Mesa 22.3.6". Pixels differ between drivers.
 /// @throws std::runtime_error naming the step of EGL that fails
 std::string openGlRenderer();
 
