@@ -9,6 +9,7 @@
 #include <ddm_msgs/topics.h>
 #include <std_msgs/Bool.h>
 #include <std_msgs/Float64.h>
+#include <std_msgs/Float64MultiArray.h>
 #include <std_msgs/UInt32.h>
 
 #include <algorithm>
@@ -39,7 +40,10 @@ RobotNode::RobotNode(ros::NodeHandle nh, ros::NodeHandle pnh, int image_size,
       transport_(nh),
       image_pub_(transport_.advertise(topics::kImage, kRecordedQueue)),
       goal_pub_(nh.advertise<sensor_msgs::Image>(topics::kGoalImage, 1, /*latch=*/true)),
-      effort_(nh, options.numMotors()),
+      effort_pub_(
+          options.numMotors() == 1
+              ? nh.advertise<std_msgs::Float64>(topics::kEffortCommand, kQueue)
+              : nh.advertise<std_msgs::Float64MultiArray>(topics::kGroupEffortCommand, kQueue)),
       applied_pub_(nh.advertise<ddm_msgs::Torque>(topics::kAppliedTorque, kRecordedQueue)),
       latency_pub_(nh.advertise<std_msgs::Float64>(topics::kLatency, kQueue)),
       misses_pub_(nh.advertise<std_msgs::UInt32>(topics::kDeadlineMisses, 1, /*latch=*/true)),
@@ -231,7 +235,7 @@ void RobotNode::lookAtPeers() {
   auto num_publishers = static_cast<int>(torque_sub_.getNumPublishers());
   if (controller_watch_.died()) num_publishers = 0;
   gate_.setPublishers(num_publishers);
-  gate_.setListeners(effort_.numSubscribers());
+  gate_.setListeners(static_cast<int>(effort_pub_.getNumSubscribers()));
 }
 
 /// Publishes the effort and everything that depends on the state of the gate. Call this function
@@ -240,7 +244,7 @@ void RobotNode::publishEffort() {
   const std::vector<double>& effort = gate_.effort(steadyNow());
   // Because a stop takes the motors from the reset service.
   if (!gate_.armed()) routine_moves_ = false;
-  if (!routine_moves_) effort_.publish(effort);
+  if (!routine_moves_) sendEffort(effort);
   if (gate_.state() != TorqueGate::State::kFollowing) settle(gate_.heldForAStep());
   for (const Stamp& stamp : gate_.takeUnanswered()) {
     ddm_msgs::Torque nothing;
@@ -248,6 +252,22 @@ void RobotNode::publishEffort() {
     applied_pub_.publish(nothing);
   }
   reportState();
+}
+
+/// Publishes the torques of all motors for the effort controllers of ros_control: as
+/// std_msgs/Float64 on `effort_command` for one motor, as std_msgs/Float64MultiArray on
+/// `group_effort_command` for several motors.
+/// @param effort  one value per motor [N m]                                         [numMotors()]
+void RobotNode::sendEffort(const std::vector<double>& effort) {
+  if (options_.numMotors() == 1) {
+    std_msgs::Float64 message;
+    message.data = effort.front();
+    effort_pub_.publish(message);
+  } else {
+    std_msgs::Float64MultiArray message;
+    message.data = effort;
+    effort_pub_.publish(message);
+  }
 }
 
 /// Publishes the torque that acted after the last answered image, at the end of its step.
@@ -280,8 +300,7 @@ void RobotNode::reportState() {
   const std::string state = gate_.describe();
   if (state == last_state_) return;
   last_state_ = state;
-  if (gate_.state() == TorqueGate::State::kWaiting ||
-      gate_.state() == TorqueGate::State::kFollowing) {
+  if (gate_.isFine()) {
     log_.info(state);
   } else {
     log_.warn(state);
@@ -295,11 +314,9 @@ void RobotNode::cancelTrial() {
 
 void RobotNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  const bool fine = gate_.state() == TorqueGate::State::kWaiting ||
-                    gate_.state() == TorqueGate::State::kFollowing;
-  status.summary(
-      fine ? diagnostic_msgs::DiagnosticStatus::OK : diagnostic_msgs::DiagnosticStatus::WARN,
-      gate_.describe());
+  status.summary(gate_.isFine() ? diagnostic_msgs::DiagnosticStatus::OK
+                                : diagnostic_msgs::DiagnosticStatus::WARN,
+                 gate_.describe());
   if (!image_problem_.empty()) {
     status.summary(diagnostic_msgs::DiagnosticStatus::ERROR, image_problem_);
   }

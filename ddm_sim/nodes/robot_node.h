@@ -20,8 +20,7 @@
 #include <atomic>
 #include <mutex>
 #include <string>
-
-#include "effort_publisher.h"
+#include <vector>
 
 namespace ddm {
 
@@ -87,6 +86,7 @@ class RobotNode {
   std::string formatProblem(const sensor_msgs::Image& image) const;
   void refuseImage(const std::string& problem);
   void publishEffort();
+  void sendEffort(const std::vector<double>& effort);
   void settle(bool acted);
   void reportState();
   void cancelTrial();
@@ -129,7 +129,7 @@ class RobotNode {
   image_transport::ImageTransport transport_;
   image_transport::Publisher image_pub_;
   ros::Publisher goal_pub_;
-  EffortPublisher effort_;
+  ros::Publisher effort_pub_;
   ros::Publisher applied_pub_;
   ros::Publisher latency_pub_;
   ros::Publisher misses_pub_;

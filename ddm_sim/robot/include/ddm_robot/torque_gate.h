@@ -107,6 +107,8 @@ class TorqueGate {
   bool inTrial() const {
     return state_ != State::kStopped && state_ != State::kResetting && state_ != State::kWaiting;
   }
+  /// Whether the motors follow the controller or wait for an episode.
+  bool isFine() const { return state_ == State::kWaiting || state_ == State::kFollowing; }
   /// Whether the last torque has acted for at least 90 % of a time step and has ended since.
   bool heldForAStep() const { return state_ == State::kHeldTooLong && holds_for_a_step_; }
   /// Describes the state and its cause.
