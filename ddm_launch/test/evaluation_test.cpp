@@ -3,7 +3,6 @@
 #include "evaluation.h"
 
 #include <ddm_plant_plugin/testing/toy_plant.h>
-#include <ddm_sim/angles.h>
 #include <ddm_sim/pendulum.h>
 #include <gtest/gtest.h>
 

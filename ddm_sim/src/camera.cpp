@@ -8,7 +8,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "ddm_sim/angles.h"
+#include "ddm_sim/plant.h"
 
 namespace ddm {
 namespace {

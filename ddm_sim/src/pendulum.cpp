@@ -6,8 +6,6 @@
 #include <boost/numeric/odeint.hpp>
 #include <cmath>
 
-#include "ddm_sim/angles.h"
-
 namespace ddm {
 namespace {
 

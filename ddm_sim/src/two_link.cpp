@@ -10,8 +10,6 @@
 #include <boost/numeric/odeint.hpp>
 #include <cmath>
 
-#include "ddm_sim/angles.h"
-
 namespace ddm {
 namespace {
 

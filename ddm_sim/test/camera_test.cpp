@@ -10,7 +10,6 @@
 #include <stdexcept>
 
 #include "ddm_plant_plugin/testing/toy_plant.h"
-#include "ddm_sim/angles.h"
 #include "ddm_sim/moving_tile.h"
 #include "ddm_sim/pendulum.h"
 

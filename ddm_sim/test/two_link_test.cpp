@@ -11,7 +11,6 @@
 #include <stdexcept>
 
 #include "ddm_msgs/testing/expect_error.h"
-#include "ddm_sim/angles.h"
 #include "ddm_sim/pendulum.h"
 
 namespace ddm {

@@ -5,7 +5,7 @@
 #include <ddm_model/model_file.h>
 #include <ddm_model/pca.h>
 #include <ddm_model/trainer.h>
-#include <ddm_sim/angles.h>
+#include <ddm_sim/plant.h>
 
 #include <boost/filesystem.hpp>
 #include <cmath>

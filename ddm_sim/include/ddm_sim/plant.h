@@ -5,6 +5,7 @@
 #include <ddm_common/random_stream.h>
 
 #include <Eigen/Core>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <random>
@@ -201,6 +202,13 @@ Eigen::VectorXd goalOf(const Plant& plant, const TrialId& id);
 /// @param type  value of `plant/type`, for messages
 /// @throws std::invalid_argument with the type and all rules that the plant breaks
 std::unique_ptr<Plant> checkedPlant(std::unique_ptr<Plant> plant, const std::string& type);
+
+constexpr double kPi = 3.14159265358979323846;
+
+/// Absolute difference of two angles [rad], measured along the shorter arc, in [0, 180] deg.
+inline double degreesBetween(double a, double b) {
+  return std::abs(std::remainder(a - b, 2.0 * kPi)) * 180.0 / kPi;
+}
 
 /// Whether a name can be a column name of a CSV file: ASCII characters without blanks, commas and
 /// quotes.

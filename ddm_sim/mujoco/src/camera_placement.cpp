@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "ddm_mujoco/renderer.h"
-#include "ddm_sim/angles.h"
+#include "ddm_sim/plant.h"
 #include "mechanism.h"
 
 namespace ddm {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ddm_sim/angles.h"
+#include "ddm_sim/plant.h"
 #include "mujoco_physics.h"
 
 namespace ddm {

@@ -9,7 +9,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "ddm_sim/angles.h"
 #include "ddm_sim/plant.h"
 #include "load_model.h"
 

@@ -7,7 +7,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "ddm_sim/angles.h"
 #include "ddm_sim/plant.h"
 #include "motors.h"
 #include "mujoco_physics.h"

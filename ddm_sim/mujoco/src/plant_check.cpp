@@ -8,7 +8,7 @@
 
 #include "ddm_mujoco/mujoco_plant.h"
 #include "ddm_mujoco/plant_proposal.h"
-#include "ddm_sim/angles.h"
+#include "ddm_sim/plant.h"
 #include "mechanism.h"
 
 namespace ddm {

@@ -9,7 +9,7 @@
 #include <random>
 #include <stdexcept>
 
-#include "ddm_sim/angles.h"
+#include "ddm_sim/plant.h"
 #include "mechanism.h"
 #include "motors.h"
 #include "mujoco_physics.h"

@@ -9,7 +9,7 @@
 #include <set>
 #include <utility>
 
-#include "ddm_sim/angles.h"
+#include "ddm_sim/plant.h"
 #include "egl_context.h"
 
 namespace ddm {

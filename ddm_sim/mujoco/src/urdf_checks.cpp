@@ -10,7 +10,7 @@
 #include <sstream>
 
 #include "ddm_mujoco/mujoco_model.h"
-#include "ddm_sim/angles.h"
+#include "ddm_sim/plant.h"
 
 namespace ddm {
 namespace {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "ddm_msgs/testing/expect_error.h"
-#include "ddm_sim/angles.h"
+#include "ddm_sim/plant.h"
 #include "model_folder.h"
 
 namespace ddm {
