@@ -31,28 +31,22 @@ class SimClient {
     applied_ = nh_.subscribe(topics::kAppliedTorque, 1000, &SimClient::onApplied, this);
     clock_ = nh_.subscribe("/clock", 1000, &SimClient::onClock, this);
     log_ = nh_.subscribe("/rosout", 1000, &SimClient::onLog, this);
-    advertise();
+    torque_ = nh_.advertise<ddm_msgs::Torque>(topics::kTorque, 1000);
     reset_ = nh_.serviceClient<ddm_msgs::Reset>(topics::kReset);
   }
-
-  void advertise() { torque_ = nh_.advertise<ddm_msgs::Torque>(topics::kTorque, 1000); }
-  void stopPublishing() { torque_.shutdown(); }
 
   /// Waits until all topics are connected, including the log, in which tests find refused resets.
   /// Begins no episode.
   bool connect() {
-    if (!reset_.waitForExistence(ros::Duration(-1)) || !waitForTorqueSubscriber()) return false;
+    if (!reset_.waitForExistence(ros::Duration(-1))) return false;
     return waitUntil([this] {
       ddm_msgs::Reset refused;
       refused.request.start = {1.0, 2.0, 3.0};
       reset_.call(refused);
-      return image_.getNumPublishers() == 1 && truth_.getNumPublishers() == 1 &&
-             applied_.getNumPublishers() == 1 && logged("reset refused");
+      return torque_.getNumSubscribers() == 1 && image_.getNumPublishers() == 1 &&
+             truth_.getNumPublishers() == 1 && applied_.getNumPublishers() == 1 &&
+             logged("reset refused");
     });
-  }
-
-  bool waitForTorqueSubscriber() {
-    return waitUntil([this] { return torque_.getNumSubscribers() == 1; });
   }
 
   /// Handles callbacks until the condition holds.

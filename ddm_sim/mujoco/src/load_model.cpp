@@ -58,7 +58,6 @@ bool isAsciiStl(const std::string& bytes) {
 
 std::string binaryStl(const std::string& ascii) {
   std::istringstream in(ascii);
-  in.imbue(std::locale::classic());
   std::vector<float> corners;
   std::string word;
   while (in >> word) {

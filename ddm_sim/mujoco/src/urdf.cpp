@@ -7,9 +7,7 @@
 #include <filesystem>
 #include <iomanip>
 #include <iterator>
-#include <locale>
 #include <set>
-#include <sstream>
 #include <stdexcept>
 
 #include "model_files.h"
@@ -177,10 +175,9 @@ void makePossible(XMLElement* link) {
   inertia = solver.eigenvectors() * principal.asDiagonal() * solver.eigenvectors().transpose();
   for (int i = 0; i < 3; ++i) {
     for (int j = i; j < 3; ++j) {
-      std::ostringstream number;  // tinyxml2 writes numbers with the decimal comma of the locale
-      number.imbue(std::locale::classic());
-      number << std::setprecision(17) << inertia(i, j);
-      element->SetAttribute(kNames[i][j], number.str().c_str());
+      // As text, because tinyxml2 writes numbers with the decimal comma of the locale.
+      const std::string number = textOf(std::setprecision(17), inertia(i, j));
+      element->SetAttribute(kNames[i][j], number.c_str());
     }
   }
 }

@@ -5,7 +5,6 @@
 #include <boost/algorithm/string/case_conv.hpp>
 #include <boost/algorithm/string/join.hpp>
 #include <cmath>
-#include <locale>
 #include <set>
 #include <sstream>
 
@@ -21,7 +20,6 @@ using boost::algorithm::join;
 void requireSizes(const XMLElement& link, const XMLElement& shape) {
   for (const char* name : {"size", "radius", "length", "scale"}) {
     std::istringstream in(attribute(shape, name));
-    in.imbue(std::locale::classic());
     const bool scale = std::string(name) == "scale";
     for (double number = 0.0; in >> number;) {
       if (number > 0.0 || (scale && number < 0.0)) continue;
@@ -68,7 +66,6 @@ std::optional<double> number(const XMLElement& parent, const char* child, const 
   const char* const text = element == nullptr ? nullptr : element->Attribute(name);
   if (text == nullptr) return std::nullopt;
   std::istringstream in(text);
-  in.imbue(std::locale::classic());
   double value = 0.0;
   if (in >> value && (in >> std::ws).eof() && std::isfinite(value)) return value;
   refuseElement(parent, "must have a finite number for ", name, " in <", child, ">, got \"", text,

@@ -60,8 +60,6 @@ class ToyPlant : public Plant {
     std::function<RenderedImage(const Eigen::VectorXd&)> draw = [](const Eigen::VectorXd&) {
       return plainImage(51, 255);
     };
-    std::function<Eigen::VectorXd(const Eigen::VectorXd&)> locate =
-        [](const Eigen::VectorXd& state) { return Eigen::VectorXd(state.head(1)); };
 
     // If empty, the default implementation of Plant is used.
     std::function<Eigen::VectorXd(std::mt19937_64*)> draw_goal;
@@ -87,9 +85,7 @@ class ToyPlant : public Plant {
     return traits_.distance(state, goal);
   }
   RenderedImage draw(const Eigen::VectorXd& state) const override { return traits_.draw(state); }
-  Eigen::VectorXd locate(const Eigen::VectorXd& state) const override {
-    return traits_.locate(state);
-  }
+  Eigen::VectorXd locate(const Eigen::VectorXd& state) const override { return state.head(1); }
 
   Traits traits_;
 };
