@@ -1,6 +1,6 @@
 // Compiles a model, after a separate process has tried it.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "load_model.h"
+#include "model_files.h"
 
 // mjxmacro.h lists the names and sizes of all arrays of a model.
 #include <fcntl.h>

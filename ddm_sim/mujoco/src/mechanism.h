@@ -11,7 +11,7 @@
 #include "ddm_mujoco/mujoco_model.h"
 #include "ddm_mujoco/mujoco_options.h"
 #include "ddm_mujoco/plant_proposal.h"
-#include "load_model.h"
+#include "model_files.h"
 
 namespace ddm {
 

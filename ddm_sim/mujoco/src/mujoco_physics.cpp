@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "ddm_sim/plant.h"
-#include "load_model.h"
+#include "model_files.h"
 
 namespace ddm {
 namespace {

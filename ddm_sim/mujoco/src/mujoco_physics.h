@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "ddm_mujoco/mujoco_model.h"
-#include "load_model.h"
+#include "model_files.h"
 #include "motors.h"
 
 namespace ddm {

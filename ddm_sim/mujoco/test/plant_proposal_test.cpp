@@ -14,7 +14,7 @@
 #include "ddm_msgs/testing/expect_error.h"
 #include "ddm_mujoco/mujoco_plant.h"
 #include "ddm_sim/plant.h"
-#include "load_model.h"
+#include "model_files.h"
 #include "model_folder.h"
 
 namespace ddm {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "ddm_mujoco/mujoco_model.h"
-#include "load_model.h"
+#include "model_files.h"
 #include "model_folder.h"
 
 namespace ddm {
