@@ -293,20 +293,16 @@ class Proposer {
     out_.to_set.insert("tolerance");
   }
 
-  /// All proposed poses, initial state and goal. In addition, each pose with all limited joints at
-  /// their nearer limit, because no pose within the limits reaches farther.
-  std::vector<VectorXd> withLimits() const {
+  /// The camera sees all proposed poses, initial state and goal. In addition, it sees each pose with
+  /// all limited joints at their nearer limit, because no pose within the limits reaches farther.
+  void proposeCamera() {
     std::vector<VectorXd> poses = positions_;
     for (const VectorXd& position : positions_) poses.push_back(mechanism_.atLimits(position));
     for (const std::vector<double>* pose : {&out_.options.start, &out_.options.goal}) {
       poses.push_back(Eigen::Map<const VectorXd>(pose->data(), positions_[0].size()));
     }
-    return poses;
-  }
-
-  void proposeCamera() {
     out_.options.look.supersampling = 4;
-    out_.options.look = placedCamera(model_, mechanism_, withLimits(), out_.options.look);
+    out_.options.look = placedCamera(model_, mechanism_, poses, out_.options.look);
   }
 
   std::shared_ptr<const MujocoModel> model_;

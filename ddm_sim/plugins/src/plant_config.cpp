@@ -36,17 +36,6 @@ namespace fs = std::filesystem;
 
 using boost::algorithm::join;
 
-/// The key `plant/type` alone, which determines the other keys of the block.
-struct TypeOption {
-  std::string type = "pendulum";
-
-  template <class Visitor>
-  void visit(Visitor& visitor) {
-    visitor("type", type);
-  }
-  std::vector<std::string> problems() const { return {}; }
-};
-
 using MakePlugin = std::function<std::shared_ptr<PlantPlugin>()>;
 
 /// The plant types of this package.
@@ -89,9 +78,10 @@ std::shared_ptr<PlantPlugin> makePlugin(const std::string& type) {
 }  // namespace
 
 std::shared_ptr<const PlantPlugin> readPlant(ParamReader* reader) {
-  // a copy, so that the other keys of the block are not reported as unknown
+  // a copy, because the type determines which keys of the block are known and valid
   ParamReader ahead = *reader;
-  const std::shared_ptr<PlantPlugin> plugin = makePlugin(ahead.read<TypeOption>("plant").type);
+  const std::string type = ahead.read<PlantOptions>("plant").type;
+  const std::shared_ptr<PlantPlugin> plugin = makePlugin(type.empty() ? "pendulum" : type);
   plugin->read(reader);
   return plugin;
 }
