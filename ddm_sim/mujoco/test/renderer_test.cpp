@@ -19,15 +19,31 @@
 #include <vector>
 
 #include "model_folder.h"
-#include "scene_model.h"
 
 namespace ddm {
 namespace {
 
-using testing::colourful;
-using testing::SceneModel;
 using testing::throwsNaming;
 using Bytes = std::vector<std::uint8_t>;
+
+/// A model, and its data with the first joint at an angle [rad].
+struct SceneModel {
+  explicit SceneModel(double angle = 0.0) {
+    data->qpos[0] = angle;
+    mj_forward(&model->get(), data.get());
+  }
+
+  const std::shared_ptr<const MujocoModel> model = std::make_shared<MujocoModel>(
+      DDM_MUJOCO_TEST_SCENE, [](const std::string& /*package*/) { return ""; });
+  const std::shared_ptr<mjData> data{mj_makeData(&model->get()), mj_deleteData};
+};
+
+RenderOptions colourful(const std::string& camera = "front") {
+  RenderOptions options;
+  options.camera = camera;
+  options.colour = true;
+  return options;
+}
 
 RenderedImage drawn(const SceneModel& scene, const RenderOptions& options) {
   return Renderer(scene.model, options).draw(*scene.data);
