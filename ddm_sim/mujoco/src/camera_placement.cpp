@@ -21,7 +21,7 @@ constexpr std::size_t kMaxTried = 6;  // largest number of directions from which
 
 /// Half the sides of the box around a geom, in the frame of the geom [m].
 Vector3d halfSides(const mjModel& m, int geom) {
-  const mjtNum* const size = m.geom_size + 3 * geom;
+  const Vector3d size(m.geom_size + 3 * geom);
   switch (m.geom_type[geom]) {
     case mjGEOM_SPHERE:
       return Vector3d::Constant(size[0]);
@@ -29,20 +29,9 @@ Vector3d halfSides(const mjModel& m, int geom) {
       return {size[0], size[0], size[0] + size[1]};
     case mjGEOM_CYLINDER:
       return {size[0], size[0], size[1]};
-    case mjGEOM_ELLIPSOID:
-    case mjGEOM_BOX:
-      return {size[0], size[1], size[2]};
     default:
-      break;
+      return size;  // of a box, an ellipsoid, or the box around a mesh
   }
-  const int mesh = m.geom_type[geom] == mjGEOM_MESH ? m.geom_dataid[geom] : -1;
-  if (mesh < 0) return Vector3d::Constant(m.geom_rbound[geom]);
-  Eigen::Vector3f half = Eigen::Vector3f::Zero();
-  for (int i = 0; i < m.mesh_vertnum[mesh]; ++i) {
-    const float* const vertex = m.mesh_vert + 3 * (m.mesh_vertadr[mesh] + i);
-    half = half.cwiseMax(Eigen::Map<const Eigen::Vector3f>(vertex).cwiseAbs());
-  }
-  return half.cast<double>();
 }
 
 /// Drawn geoms that a joint can move.

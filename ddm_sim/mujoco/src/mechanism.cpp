@@ -119,13 +119,10 @@ VectorXd Mechanism::load(const VectorXd& position, bool springs) const {
 double Mechanism::energy(const VectorXd& position, bool springs) const {
   mjModel m = model_->get();
   m.opt.enableflags |= mjENBL_ENERGY;
+  if (!springs) m.opt.disableflags |= mjDSBL_PASSIVE;
   place(position);
   mj_energyPos(&m, data_.get());
-  double energy = springs ? data_->energy[0] : 0.0;
-  for (int i = 1; i < m.nbody && !springs; ++i) {
-    energy -= m.body_mass[i] * mju_dot3(m.opt.gravity, data_->xipos + 3 * i);
-  }
-  return energy;
+  return data_->energy[0];
 }
 
 VectorXd Mechanism::motion(int joint, const VectorXd& position) const {
