@@ -20,13 +20,13 @@ struct Range {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
 
-  /// Largest torque that the motor reaches in both directions. Empty if the torque has no limit.
-  std::optional<double> limit() const {
+  /// Largest torque that the motor reaches in both directions; 0 if the torque has no limit.
+  double limit() const {
     const double limit = std::min(-low, high);
-    return limit > 0.0 && std::isfinite(limit) ? std::make_optional(limit) : std::nullopt;
+    return limit > 0.0 && std::isfinite(limit) ? limit : 0.0;
   }
 
-  /// Why limit() is empty.
+  /// Why limit() is 0.
   std::string whyNone() const {
     if (!(low < high) || !std::isfinite(high - low)) return "has no limit";
     return textOf("has the one-sided torques [", low, ", ", high, "]");
@@ -87,20 +87,15 @@ Motor actuator(const MujocoModel& model, int i) {
 }
 
 Motor namedMotor(const MujocoModel& model, const std::string& name) {
-  Motor motor;
-  motor.joint = model.id(mjOBJ_JOINT, name, "plant/motors");
+  const int joint = model.id(mjOBJ_JOINT, name, "plant/motors");
   const auto follows = model.urdf().leaders.find(name);
   if (follows != model.urdf().leaders.end()) {
     refuseModel("plant/motors must list joints that move by themselves, got ", name, " of ",
                 model.uri(), ", which mimics the joint ", follows->second, ": list that one");
   }
-  motor.limit = model.effortLimit(name);
-  if (motor.limit == 0.0) motor.why_unknown = "has a limit of 0";
-  if (motor.limit) return motor;
-  const Range range = rangeOfActuators(model.get(), motor.joint);
-  motor.limit = range.limit();
-  motor.why_unknown = range.whyNone();
-  return motor;
+  if (const auto effort = model.effortLimit(name)) return {joint, *effort, "has a limit of 0"};
+  const Range range = rangeOfActuators(model.get(), joint);
+  return {joint, range.limit(), range.whyNone()};
 }
 
 }  // namespace
@@ -134,8 +129,7 @@ std::vector<double> limitsOf(const MujocoModel& model, const MujocoOptions& opti
   std::vector<double> limits;
   for (std::size_t i = 0; i < motors.size(); ++i) {
     const std::string joint = model.name(mjOBJ_JOINT, motors[i].joint);
-    // Many files from CAD exporters have effort 0 as a placeholder for an unknown limit.
-    const double allowed = motors[i].limit.value_or(0.0);
+    const double allowed = motors[i].limit;
     if (given.empty() && allowed == 0.0) {
       refuseModel(
           "plant/max_torque must be given, because ", model.uri(), " ", motors[i].why_unknown,

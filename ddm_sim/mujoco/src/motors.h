@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,9 +13,10 @@ namespace ddm {
 
 struct Motor {
   int joint = 0;  ///< index of the joint that the motor moves
-  /// Limit of the motor's torque or force in the file [N m or N]. Empty if the file has no limit.
-  std::optional<double> limit;
-  std::string why_unknown = "has no limit";  ///< what the file says if `limit` is empty or 0
+  /// Limit of the motor's torque or force in the file [N m or N]; 0: unknown. Many files from CAD
+  /// exporters have 0 for an unknown limit.
+  double limit = 0.0;
+  std::string why_unknown = "has no limit";  ///< what the file says if `limit` is 0
 };
 
 /// Motors of the option `motors`, or the actuators of the file in their order.

@@ -191,8 +191,7 @@ MujocoPlant::MujocoPlant(std::shared_ptr<const MujocoModel> model, const MujocoO
       reward_scale_(info().max_torque) {
   const std::vector<Motor> motors = motorsOf(*model_, options);
   for (std::size_t i = 0; i < motors.size(); ++i) {
-    const double limit = motors[i].limit.value_or(0.0);
-    if (limit > 0.0) reward_scale_[static_cast<Eigen::Index>(i)] = limit;
+    if (motors[i].limit > 0.0) reward_scale_[static_cast<Eigen::Index>(i)] = motors[i].limit;
   }
 }
 

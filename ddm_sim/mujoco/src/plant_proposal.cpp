@@ -62,7 +62,7 @@ class Proposer {
     motors_ = motorsOf(*model, out_.options);
     for (const Motor& motor : motors_) {
       ModelJoint& joint = out_.joints[static_cast<std::size_t>(motor.joint)];
-      joint.effort = motor.limit.value_or(0.0);
+      joint.effort = motor.limit;
       out_.motors.push_back(joint.name);
     }
     out_.reasons["motors"] = choice.why;
@@ -202,7 +202,7 @@ class Proposer {
     for (const Motor& motor : motors_) {
       const double needed = rounded(neededTorque(motor));
       const std::string joint = model_->name(mjOBJ_JOINT, motor.joint);
-      const double allowed = motor.limit.value_or(0.0);  // many files have 0 for an unknown limit
+      const double allowed = motor.limit;
       if (allowed > 0.0 && allowed <= kTooStrong * needed) {
         limits.push_back(allowed);
         reasons.push_back(joint + ": limit of the file");
