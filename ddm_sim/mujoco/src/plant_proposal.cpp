@@ -293,8 +293,9 @@ class Proposer {
     out_.to_set.insert("tolerance");
   }
 
-  /// The camera sees all proposed poses, initial state and goal. In addition, it sees each pose with
-  /// all limited joints at their nearer limit, because no pose within the limits reaches farther.
+  /// The camera sees all proposed poses, initial state and goal. In addition, it sees each pose
+  /// with all limited joints at their nearer limit, because no pose within the limits reaches
+  /// farther.
   void proposeCamera() {
     std::vector<VectorXd> poses = positions_;
     for (const VectorXd& position : positions_) poses.push_back(mechanism_.atLimits(position));
