@@ -76,7 +76,7 @@ def test_paths_start_at_the_folder_of_their_file_and_those_of_arguments_where_it
     for arguments, block, key, value in (
             (["--runs", "runs/one"], "experiment", "runs", "runs/one"), (["--runs=~/runs"], "experiment", "runs", "runs"),
             (["--model", "m.ddm"], "start", "model", "m.ddm"), (["--model", "~/m.ddm"], "start", "model", "m.ddm"),
-            (["--set", "robot/goal_file=goal.png"], "robot", "goal_file", "goal.png"),
+            (["--set", "robot/goal_file=a: #1 = {x}.png"], "robot", "goal_file", "a: #1 = {x}.png"),
             (["--set", "robot/goal_file=~/g.png"], "robot", "goal_file", "g.png"),
             (["--plant", "plants/robot.yaml"], "robot", "goal_file", "plants/goal.png"),
             (["--plant", "plants/robot.yaml"], "experiment", "plant", "plants/robot.yaml"),
@@ -90,7 +90,8 @@ def test_paths_start_at_the_folder_of_their_file_and_those_of_arguments_where_it
         expected = [resolve.file(name) for name in value] if isinstance(value, list) else resolve.file(value)
         assert resolve(*arguments)[block][key] == expected, arguments
     assert resolve("--path", "~root/a") == os.path.expanduser("~root/a")
-    assert resolve("--path", "./~/a") == resolve.file("~/a")
+    for path, expected in (("~", ""), ("./~/a", "~/a"), ("a~", "a~")):
+        assert resolve("--path", path) == resolve.file(expected)
 
 
 @pytest.mark.skipif(not has_mujoco(), reason="ddm_sim was built without MuJoCo")
@@ -113,7 +114,8 @@ def test_a_model_file_is_found_from_any_folder_and_brings_its_motors(resolve):
 def test_bad_arguments_and_files_are_named(resolve):
     resolve.write("run/config.yaml", "version: 2\nexperiment: {preset: debug, plant: pendulum, method: ddm}\n")
     for code, words, arguments in (
-            (2, ["--set", "seed"], ["--set", "seed"]),
+            *((2, ["--set must be BLOCK/KEY=VALUE, got '%s'" % text], ["--set", text])
+              for text in ("seed", "seed=2", "mpc/horizon", "mpc=a/b", "/horizon=2", "mpc/=2")),
             (2, ["--set model/encoder_widths=[30"], ["--set", "model/encoder_widths=[30, {]"]),
             (1, ["unknown preset 'papier'"], ["--preset", "papier"]), (1, ["no.yaml"], ["--config", "no.yaml"]),
             (1, ["mpc/horizon", "many"], ["--set", "mpc/horizon=many"]),
