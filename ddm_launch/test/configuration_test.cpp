@@ -157,9 +157,10 @@ TEST(Configuration, ProblemsOfAllBlocksAreReportedAtOnce) {
             "evaluation: {goal_distance: .nan}\nplant: {dt: fast}\n"
             "model: {order: 2.5}\nsin: {watchdog: 1}\n");
       },
-      {"mpc/horzion", "horizon?", "mpc/epsilon", "1.5", "experiment/seed", "-1",
-       "experiment/trials", "1000", "experiment/timeout", "trial/num_steps",
-       "evaluation/goal_distance", "nan", "plant/dt", "fast", "model/order", "2.5", "block sin"}));
+      {"differs.yaml", "\n - unknown key mpc/horzion (did you mean horizon? known keys: horizon, ",
+       "\n - mpc/epsilon", "1.5", "experiment/seed", "-1", "experiment/trials", "1000",
+       "experiment/timeout", "trial/num_steps", "evaluation/goal_distance", "nan", "plant/dt",
+       "fast", "model/order", "2.5", "block sin (did you mean sim?"}));
 }
 
 TEST(Configuration, WhatContradictsIsRefused) {

@@ -70,7 +70,7 @@ def test_a_robot_has_the_motors_of_its_plant_and_a_controller_that_waits_for_two
 
 def test_paths_start_at_the_folder_of_their_file_and_those_of_arguments_where_it_was_called(resolve):
     resolve.write("plants/robot.yaml", "plant: {max_torque: 2.0}\nrobot: {goal_file: goal.png}\n")
-    resolve.write("more/start.yaml", "start: {bags: [a.bag]}\n")
+    resolve.write("more/start.yaml", "start: {bags: [a.bag, /b.bag]}\nexperiment: {plant: ../plants/robot.yaml}\n")
     for name in ("a b.bag", "it's.bag", "c.bag"):
         resolve.write(name, "")
     for arguments, block, key, value in (
@@ -81,7 +81,8 @@ def test_paths_start_at_the_folder_of_their_file_and_those_of_arguments_where_it
             (["--plant", "plants/robot.yaml"], "robot", "goal_file", "plants/goal.png"),
             (["--plant", "plants/robot.yaml"], "experiment", "plant", "plants/robot.yaml"),
             (["--plant", "plants/robot.yaml", "--set", "robot/goal_file=goal.png"], "robot", "goal_file", "goal.png"),
-            (["--config", "more/start.yaml"], "start", "bags", ["more/a.bag"]),
+            (["--config", "more/start.yaml"], "start", "bags", ["more/a.bag", "/b.bag"]),
+            (["--config", "more/start.yaml"], "experiment", "plant", "plants/robot.yaml"),
             (["--bags", "a.bag", "/b.bag"], "start", "bags", ["a.bag", "/b.bag"]),
             # Several bags may be given in one text.
             (["--bags", "a b.bag"], "start", "bags", ["a b.bag"]), (["--bags", "it's.bag\nc.bag"], "start", "bags", ["it's.bag", "c.bag"]),
