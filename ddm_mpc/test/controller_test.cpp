@@ -232,11 +232,7 @@ TEST(MpcPolicy, GivesTheSameTorquesWhenATrialIsRunAgain) {
 std::shared_ptr<const Ddm> modelWithMotors(int torque_dim) {
   RandomModelOptions options;
   options.torque_dim = torque_dim;
-  const Ddm random = randomModel(options);
-  ModelInfo info;  // z_t, z_{t-1}, u_{t-1} of each
-  info.support_states = testing::randomMatrix(2 + 2 + torque_dim, 4, 7).cast<float>();
-  return std::make_shared<const Ddm>(random.options(), random.imageSize(), torque_dim, random.pca(),
-                                     random.theta(), random.goal(), info);
+  return std::make_shared<const Ddm>(withSupportStates(randomModel(options), 4));
 }
 
 TEST(MpcPolicy, PlansByTimeForAtMostThreeMotorsWithSupportStatesAndNamesTheRemedy) {
@@ -254,18 +250,15 @@ TEST(MpcPolicy, PlansByTimeForAtMostThreeMotorsWithSupportStatesAndNamesTheRemed
 }
 
 TEST(MpcPolicy, TellsTheDistanceToTheGoalInUnitsOfTheSpread) {
-  const Ddm random = randomModel({});
   ModelInfo info;
   info.feature_spread = 0.25;
-  const auto model =
-      std::make_shared<const Ddm>(random.options(), random.imageSize(), random.torqueDim(),
-                                  random.pca(), random.theta(), random.goal(), info);
+  const auto model = std::make_shared<const Ddm>(withInfo(randomModel({}), info));
   MpcPolicy policy(model, MpcOptions()), unknown(sharedModel(), MpcOptions());
   unknown.startTrial({});
-  unknown.observe(random.goal());
+  unknown.observe(model->goal());
   EXPECT_FALSE(unknown.goalDistance().has_value());
   policy.startTrial({});
-  policy.observe(random.goal());
+  policy.observe(model->goal());
   EXPECT_NEAR(policy.goalDistance().value(), 0.0, 1e-12);
   policy.observe(randomImage(8, 50));
   const double distance = (model->encode(randomImage(8, 50)) - model->goalFeature()).norm();

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_mpc/cost_to_go.h"
 
-#include <ddm_model/testing/gradient_check.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
@@ -43,7 +42,7 @@ Ddm pushedModel(const Eigen::MatrixXd& places, const std::vector<double>& max_to
       }
     }
   }
-  return Ddm(model.options(), model.imageSize(), 2, model.pca(), model.theta(), model.goal(), info);
+  return withInfo(model, info);
 }
 
 /// Along x from -1 to 1.
@@ -116,18 +115,11 @@ class PlansWithCostToGo : public ::testing::Test {
 };
 
 TEST_F(PlansWithCostToGo, TheGradientMatchesFiniteDifferencesFarFromTheGoalAndNearIt) {
-  const auto f = [&](const Eigen::VectorXd& u, Eigen::VectorXd* gradient) {
-    const Eigen::Map<const Eigen::MatrixXd> U(u.data(), 2, kHorizon);
-    Eigen::MatrixXd d_U;
-    const double value = cost_.evaluate(U, gradient != nullptr ? &d_U : nullptr);
-    if (gradient != nullptr) *gradient = Eigen::Map<const Eigen::VectorXd>(d_U.data(), d_U.size());
-    return value;
-  };
-  const Eigen::VectorXd u = 0.3 * testing::randomMatrix(2 * kHorizon, 1, 3);
-  cost_.setProblem(restingAt({0.9, 0.95}), Eigen::Vector2d(0.1, 0.0));
-  EXPECT_TRUE(testing::gradientMatches(f, u, 1e-5));
-  cost_.setProblem(restingAt({0.2, 0.0}), Eigen::Vector2d(0.1, 0.0));
-  EXPECT_TRUE(testing::gradientMatches(f, u, 1e-5));
+  const Eigen::MatrixXd U = 0.3 * testing::randomMatrix(2, kHorizon, 3);
+  for (const Eigen::Vector2d& z : {Eigen::Vector2d(0.9, 0.95), Eigen::Vector2d(0.2, 0.0)}) {
+    cost_.setProblem(restingAt(z), Eigen::Vector2d(0.1, 0.0));
+    EXPECT_TRUE(gradientMatches(&cost_, U, 1e-5)) << z.transpose();
+  }
 }
 
 TEST(PlanWithCostToGo, WeighsEachTorqueAndItsChangeAtTheGoalByTheirShareOfTheLargest) {
@@ -212,14 +204,7 @@ class PlansWithSaturatingCost : public PlansWithCostToGo {
 
 TEST_F(PlansWithSaturatingCost, TheGradientMatchesFiniteDifferences) {
   near_.setProblem(restingAt({0.9, 0.95}), Eigen::Vector2d(0.1, 0.0));
-  const auto f = [&](const Eigen::VectorXd& u, Eigen::VectorXd* gradient) {
-    const Eigen::Map<const Eigen::MatrixXd> U(u.data(), 2, kLong);
-    Eigen::MatrixXd d_U;
-    const double value = near_.evaluate(U, gradient != nullptr ? &d_U : nullptr);
-    if (gradient != nullptr) *gradient = Eigen::Map<const Eigen::VectorXd>(d_U.data(), d_U.size());
-    return value;
-  };
-  EXPECT_TRUE(testing::gradientMatches(f, 0.3 * testing::randomMatrix(2 * kLong, 1, 3), 1e-5));
+  EXPECT_TRUE(gradientMatches(&near_, 0.3 * testing::randomMatrix(2, kLong, 3), 1e-5));
 }
 
 TEST_F(PlansWithSaturatingCost, TheCostIsTheSumOfTheStepsAndNothingComesAfterThem) {
@@ -268,11 +253,7 @@ TEST(CostToGo, TakesAtMostHalfAGigabyteForTheMostMotorsAndSupportStates) {
   RandomModelOptions options;
   options.torque_dim = SaturatingCost::kMaxMotors;
   options.gain = 0.1;
-  const Ddm random = randomModel(options);
-  ModelInfo info;
-  info.support_states = testing::randomMatrix(2 + 2 + options.torque_dim, 1000, 7).cast<float>();
-  const Ddm model(random.options(), random.imageSize(), options.torque_dim, random.pca(),
-                  random.theta(), random.goal(), info);
+  const Ddm model = withSupportStates(randomModel(options), 1000);
   const auto peakKiB = [] {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);

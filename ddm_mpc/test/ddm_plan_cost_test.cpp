@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_mpc/ddm_plan_cost.h"
 
-#include <ddm_model/testing/gradient_check.h>
 #include <gtest/gtest.h>
 
 #include <deque>
@@ -45,19 +44,6 @@ double slowCost(const Ddm& model, const History& x, const Eigen::VectorXd& goal,
     if (predicted != nullptr) predicted->push_back(features.front());
   }
   return cost;
-}
-
-/// dJ/dU against differences.
-::testing::AssertionResult gradientMatches(DdmPlanCost* cost, const Eigen::MatrixXd& U) {
-  const auto f = [&](const Eigen::VectorXd& u, Eigen::VectorXd* gradient) {
-    Eigen::MatrixXd d_U;
-    const double value =
-        cost->evaluate(Eigen::Map<const Eigen::MatrixXd>(u.data(), U.rows(), U.cols()),
-                       gradient != nullptr ? &d_U : nullptr);
-    if (gradient != nullptr) *gradient = Eigen::Map<const Eigen::VectorXd>(d_U.data(), d_U.size());
-    return value;
-  };
-  return testing::gradientMatches(f, Eigen::Map<const Eigen::VectorXd>(U.data(), U.size()), 1e-6);
 }
 
 TEST(DdmPlanCost, ValueGradientAndFeaturesEqualSlowComputationsForModelsOfAllShapes) {

@@ -85,11 +85,7 @@ TEST_F(LongPreparation, DoesNotDelayTheAnswerToACancelledGoal) {
   RandomModelOptions options;
   options.torque_dim = 3;
   options.gain = 0.1;
-  const Ddm random = randomModel(options);
-  ModelInfo info;
-  info.support_states = testing::randomMatrix(2 + 2 + 3, 1000, 7).cast<float>();
-  const Ddm model(random.options(), random.imageSize(), 3, random.pca(), random.theta(),
-                  random.goal(), info);
+  const Ddm model = withSupportStates(randomModel(options), 1000);
   const auto now = [] { return std::chrono::steady_clock::now(); };
   const auto begin_of_preparation = now();
   CostToGo(model, Eigen::VectorXd::Constant(3, 6.0)).setGoal(model.goalFeature(), false);

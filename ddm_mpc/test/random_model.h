@@ -4,7 +4,9 @@
 
 #include <ddm_model/ddm.h>
 #include <ddm_model/history.h>
+#include <ddm_model/testing/gradient_check.h>
 #include <ddm_model/testing/random_matrix.h>
+#include <gtest/gtest.h>
 
 #include <Eigen/QR>
 #include <functional>
@@ -57,6 +59,20 @@ inline Ddm randomModel(const RandomModelOptions& options) {
   return Ddm(options.model, options.image_size, options.torque_dim, pca, theta, goal, ModelInfo());
 }
 
+/// The model with other information about its training.
+inline Ddm withInfo(const Ddm& model, const ModelInfo& info) {
+  return Ddm(model.options(), model.imageSize(), model.torqueDim(), model.pca(), model.theta(),
+             model.goal(), info);
+}
+
+/// The model with random support states.
+inline Ddm withSupportStates(const Ddm& model, int count) {
+  ModelInfo info;  // z_t, z_{t-1}, u_{t-1} of each
+  const int dim = model.featureDim() + model.featureDim() + model.torqueDim();
+  info.support_states = testing::randomMatrix(dim, count, 7).cast<float>();
+  return withInfo(model, info);
+}
+
 /// A model with f(h) = A h + b, no hidden layer: z_{t+1} = A h_t + b.
 /// @param A  [feature_dim x order (feature_dim + torque_dim)]
 inline Ddm linearModel(RandomModelOptions options, const Eigen::MatrixXd& A,
@@ -78,6 +94,21 @@ inline History randomHistory(const Ddm& model, unsigned seed) {
       x.apply(testing::randomMatrix(model.torqueDim(), 1, seed + 2 * step + 1));
   }
   return x;
+}
+
+/// Compares dJ/dU with differences.
+inline ::testing::AssertionResult gradientMatches(DdmPlanCost* cost, const Eigen::MatrixXd& U,
+                                                  double tolerance = 1e-6) {
+  const auto f = [&](const Eigen::VectorXd& u, Eigen::VectorXd* gradient) {
+    Eigen::MatrixXd d_U;
+    const double value =
+        cost->evaluate(Eigen::Map<const Eigen::MatrixXd>(u.data(), U.rows(), U.cols()),
+                       gradient != nullptr ? &d_U : nullptr);
+    if (gradient != nullptr) *gradient = Eigen::Map<const Eigen::VectorXd>(d_U.data(), d_U.size());
+    return value;
+  };
+  return testing::gradientMatches(f, Eigen::Map<const Eigen::VectorXd>(U.data(), U.size()),
+                                  tolerance);
 }
 
 /// Plans with a deep dynamical model from any state to any goal, as MpcPolicy does.

@@ -40,8 +40,7 @@ inline ddm_msgs::Model modelOfSeed(unsigned seed) {
   const Ddm model = randomModel(options);
   ModelInfo info = model.info();
   info.feature_spread = kSpread;
-  return modelMessage(Ddm(model.options(), model.imageSize(), model.torqueDim(), model.pca(),
-                          model.theta(), model.goal(), info));
+  return modelMessage(withInfo(model, info));
 }
 
 /// Runs trials of mpc_node.
