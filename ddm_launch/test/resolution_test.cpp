@@ -201,13 +201,5 @@ TEST_F(Resolution, AnotherModelOrOtherBagsBringTheirOwnChecksums) {
   EXPECT_TRUE(read().start.checksums.empty());
 }
 
-TEST_F(Resolution, MessagesNameTheFiles) {
-  given_.configs = {file("bad.yaml", "mpc: {horzion: 3}\n")};
-  EXPECT_TRUE(
-      throwsNaming<std::invalid_argument>([this] { read(); }, {given_.configs[0], "mpc/horzion"}));
-  given_.configs = {folder_.file("missing.yaml")};
-  EXPECT_TRUE(throwsNaming<std::runtime_error>([this] { read(); }, {given_.configs[0]}));
-}
-
 }  // namespace
 }  // namespace ddm

@@ -29,12 +29,6 @@ std::string withColumn(size_t index, const std::string& value) {
   return header() + boost::join(columns, ",") + "\n";
 }
 
-TEST(TrialsCsv, HasTheColumnsOfTheContract) {
-  EXPECT_EQ(header(),
-            "seed,trial,frames,success,success_strict,final_error,v_r,v_p,train_s,"
-            "train_evaluations,plan_ms_median,plan_ms_p99,version,return\n");
-}
-
 TEST(TrialsCsv, RowsAreReadBackAsTheyWereAndWhatIsNotKnownStaysEmpty) {
   std::vector<TrialRow> rows = {toyRow(0), toyRow(1), toyRow(2), toyRow(3)};
   rows[0].evaluation.total_reward = -1.0 / 3.0;
@@ -85,21 +79,12 @@ TEST(TrialsCsv, ADamagedValueIsRefusedWithItsLine) {
   }
 }
 
-const std::vector<std::string> kTorqueNames = {"dx_px", "dy_px"};
-
-TEST(TorquesCsv, HasARowOfEachStepWithAllDigits) {
-  EXPECT_EQ(formatTorquesCsv({Eigen::Vector2d(1.0 / 3.0, -2.0), Eigen::Vector2d(0.0, 1e-300)},
-                             {true, false}, kTorqueNames),
-            "step,dx_px,dy_px,exploratory\n"
-            "0,0.33333333333333331,-2,1\n1,0,1e-300,0\n");
-}
-
 TEST(TorquesCsv, RowsThatDoNotFitTheHeaderAreNotWritten) {
   const std::vector<Eigen::VectorXd> torques = {Eigen::Vector2d(1.0, 2.0),
                                                 Eigen::VectorXd::Zero(1)};
   EXPECT_TRUE(throwsNaming<std::invalid_argument>(
       [&] {
-        formatTorquesCsv(torques, {false, false}, kTorqueNames);
+        formatTorquesCsv(torques, {false, false}, {"dx_px", "dy_px"});
       },
       {"step 1 has 1 ", " 2 (dx_px,dy_px)"}));
 }
