@@ -3,7 +3,8 @@
 import os
 
 from processes import find_program, output_of, roslaunch, run_experiment
-from run_files import changes, fingerprint
+from run_files import changes
+from sweeps import snapshot
 
 LIMIT_S = 240.0  # time limit of a program on a busy machine
 
@@ -13,7 +14,7 @@ def test_what_reads_a_run_leaves_it_as_it_is(tmp_path):
     run_experiment("--preset", "debug", "--trials", 1, "--set", "training/max_iterations=20", "--out", run)
     model = os.path.join(run, "trial_001", "model.ddm")
     bags = [os.path.join(run, "trial_%03d" % k, "trial.bag") for k in (0, 1)]
-    before = fingerprint(run)
+    before = snapshot(run)
     for package, *words in (
             ("ddm_launch", "evaluate", "--model", model, "--plant", "pendulum", "--seeds", "0:2", "--preset", "debug",
              "--config", config, "--out", "evaluated"),
@@ -23,9 +24,9 @@ def test_what_reads_a_run_leaves_it_as_it_is(tmp_path):
             ("ddm_model", "inspect", "--model", model, "--out", "report", *bags),
             ("ddm_model", "train_from_bags", "--config", config, "--out", "again.ddm", *bags)):
         output_of([find_program(words[0], package)] + words[1:], LIMIT_S, folder=str(tmp_path))
-        assert changes(before, fingerprint(run)) == [], words
+        assert changes(before, snapshot(run)) == [], words
     for launch in (["control.launch", "num_steps:=5", "model:=" + model],
                    ["replay.launch", "model:=" + model, "bag:=" + bags[0], "rate:=0", "out:=%s/replay.csv" % tmp_path]):
         output = roslaunch(str(tmp_path), *launch, "preset:=debug", limit_s=LIMIT_S)
-        assert changes(before, fingerprint(run)) == [], output
+        assert changes(before, snapshot(run)) == [], output
         assert "process has finished cleanly" in output and "exit code" not in output
