@@ -20,16 +20,6 @@ def test_links_lead_to_files_and_headings_that_are_there():
     assert not dead
 
 
-def test_every_page_is_reached_from_the_first_one():
-    reached, todo = set(), ["README.md"]
-    while todo:
-        page = todo.pop()
-        if page not in reached:
-            reached.add(page)
-            todo += [path for path, _ in pages.links(page) if path.endswith(".md")]
-    assert set(pages.page_paths()) <= reached
-
-
 def test_programs_and_launch_files_that_pages_start_are_there():
     missing = set()
     for page in pages.page_paths():

@@ -30,13 +30,6 @@ def run_commands(folder, example, *replacements):
     return output
 
 
-def test_each_example_is_short_and_on_the_page():
-    for name in sorted(os.listdir(os.path.join(pages.CHECKOUT, FOLDER))):
-        if name.endswith(".py"):
-            assert len(pages.read(os.path.join(FOLDER, name)).splitlines()) <= 70
-            assert "python3 %s/%s " % (FOLDER, name) in pages.read(PAGE), name
-
-
 def test_the_first_program_of_the_pages_learns_to_swing_up():
     texts = [pages.blocks(pages.read(page), "python")[0] for page in (PAGE, "README.md")]
     assert texts[0] == texts[1]
