@@ -82,14 +82,6 @@ def test_packages_that_are_missing_are_installed_and_optional_ones_that_do_not_e
     assert code == 1 and "sudo" in output and "install -y --no-install-recommends cmake" in output
 
 
-def test_the_guard_against_services_passes_on_the_verdict(shell):
-    policy = shell.folder / "policy-rc.d"
-    guarded = "export POLICY_RC_D=%s; \"${around_apt[@]}\" " % policy
-    assert shell.run(guarded + 'sh -c "$POLICY_RC_D; exit 3"', "test.sh")[0] == 3
-    assert shell.run(guarded + 'sh -c "$POLICY_RC_D; echo policy says \\$?"', "test.sh") == (0, "policy says 101\n")
-    assert not policy.exists()
-
-
 def test_nodes_keep_to_this_machine_or_image_unless_the_caller_names_a_master_or_an_address(shell):
     for told, address in (("ROS_IP= ROS_HOSTNAME=", "127.0.0.1"), ("ROS_IP=10.0.0.2 ROS_HOSTNAME=", "10.0.0.2"),
                           ("ROS_IP= ROS_HOSTNAME=robot", "")):
