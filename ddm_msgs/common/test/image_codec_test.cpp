@@ -91,27 +91,19 @@ TEST(ImageCodec, CutsAnImageToItsCentralSquareAndAnOddRowAtTheBottom) {
   EXPECT_EQ(decodeImage(makeImage("mono8", 2, 5, tall), 2), Bytes({1, 2, 3, 4}));
 }
 
-TEST(ImageCodec, WeighsTheColoursOfEveryEightBitLayout) {
-  const Bytes red_is_76(4, 76);  // 0.299 * 255
-  const std::vector<std::pair<std::string, Bytes>> red = {
-      {"rgb8", {255, 0, 0}},      {"bgr8", {0, 0, 255}},      {"8UC3", {0, 0, 255}},
-      {"rgba8", {255, 0, 0, 13}}, {"bgra8", {0, 0, 255, 13}}, {"8UC4", {0, 0, 255, 13}},
-      {"RGB8", {255, 0, 0}},      {"BGR8", {0, 0, 255}}};
-  for (const auto& layout : red) {
-    EXPECT_EQ(decodeImage(makeUniform(layout.first, 2, 2, layout.second), 2), red_is_76)
-        << layout.first;
-  }
-}
-
-TEST(ImageCodec, WeighsTheColoursOfEverySixteenBitLayout) {
+TEST(ImageCodec, WeighsTheColoursOfEveryLayout) {
+  const auto expectRed = [](const std::string& encoding, const auto& pixel) {
+    const Bytes red_is_76(4, 76);  // 0.299 * 255
+    EXPECT_EQ(decodeImage(makeUniform(encoding, 2, 2, pixel), 2), red_is_76) << encoding;
+  };
+  for (const char* encoding : {"rgb8", "RGB8"}) expectRed(encoding, Bytes{255, 0, 0});
+  for (const char* encoding : {"bgr8", "BGR8", "8UC3"}) expectRed(encoding, Bytes{0, 0, 255});
+  expectRed("rgba8", Bytes{255, 0, 0, 13});
+  for (const char* encoding : {"bgra8", "8UC4"}) expectRed(encoding, Bytes{0, 0, 255, 13});
   using Words = std::vector<std::uint16_t>;
-  const Bytes red_is_76(4, 76);
-  const std::vector<std::pair<std::string, Words>> red = {
-      {"rgb16", {65535, 0, 0}}, {"16UC3", {0, 0, 65535}}, {"bgra16", {0, 0, 65535, 1300}}};
-  for (const auto& layout : red) {
-    EXPECT_EQ(decodeImage(makeUniform(layout.first, 2, 2, layout.second), 2), red_is_76)
-        << layout.first;
-  }
+  expectRed("rgb16", Words{65535, 0, 0});
+  expectRed("16UC3", Words{0, 0, 65535});
+  expectRed("bgra16", Words{0, 0, 65535, 1300});
 }
 
 TEST(ImageCodec, DividesSixteenBitGreyBy257) {
