@@ -123,48 +123,44 @@ std::vector<std::string> learnersMotors(const Arguments& given) {
   return out;
 }
 
-TEST_F(Resolution, ALearnerKnowsTheMotorsOfItsPlant) {
-  using Motors = std::vector<std::string>;
-  EXPECT_EQ(learnersMotors(given_), (Motors{"6.0", "6.0", "1"}));
-  given_.set("experiment/plant", std::string("moving_tile"));
-  EXPECT_EQ(learnersMotors(given_), (Motors{"5.0", "5.0", "2"}));
-  given_.set("experiment/plant", std::string("two_link"));
-  EXPECT_EQ(learnersMotors(given_), (Motors{"[4.0, 2.0]", "[4.0, 2.0]", "2"}));
-  given_.set("experiment/plant", std::string("pendulum_gravity"));
-  EXPECT_EQ(learnersMotors(given_), (Motors{"2.5", "2.5", "1"}));
-  given_.configs = {file("motor.yaml", "plant: {max_torque: 3}\n")};
-  EXPECT_EQ(learnersMotors(given_), (Motors{"3.0", "3.0", "1"}));
-  given_.configs = {file("smaller.yaml", "plant: {max_torque: 3}\nmpc: {max_torque: 1}\n")};
-  EXPECT_EQ(learnersMotors(given_), (Motors{"3.0", "1", "1"}));
-  given_.set("model/max_torque", 4.0);
-  EXPECT_EQ(learnersMotors(given_), (Motors{"4.0", "1", "1"}));
-}
-
-TEST_F(Resolution, ALearnerKnowsTheMotorsOfAPlantWhoseFileDoesNotNameThem) {
-  given_.set("experiment/plant", file("plain.yaml", "plant: {type: two_link}\n"));
-  const std::vector<std::string> motors = {"[4.0, 2.0]", "[4.0, 2.0]", "2"};
-  EXPECT_EQ(learnersMotors(given_), motors);
-  given_.configs = {file("none.yaml", "plant: {max_torque: []}\n")};
-  EXPECT_EQ(learnersMotors(given_)[2], "1") << "for the reader to refuse";
-  given_.configs = {file("bad.yaml", "plant: {no_key: 1}\n")};
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>([this] { read(); }, {"plant/no_key"}));
-}
-
-TEST_F(Resolution, WhereThereIsARobotItsMotorsDecide) {
-  using Motors = std::vector<std::string>;
-  given_.set("experiment/plant", std::string("pendulum_gravity"));
-  given_.configs = {file("robot.yaml", "robot: {max_torque: 2}\n")};
-  EXPECT_EQ(learnersMotors(given_), (Motors{"2", "2", "1"}));
-  given_.configs = {file("two.yaml", "robot: {max_torque: [4, 2]}\n")};
-  EXPECT_EQ(learnersMotors(given_), (Motors{"[4, 2]", "[4, 2]", "2"}));
-  EXPECT_EQ(YAML::Dump(resolve(given_).blocks).find('&'), std::string::npos) << "no aliases";
+TEST_F(Resolution, ALearnerKnowsTheMotorsOfItsRobotOrElseOfItsPlant) {
+  struct Case {
+    std::string plant, blocks;
+    std::vector<std::string> motors;
+  };
+  const std::string with_gravity = "pendulum_gravity";
+  const std::string plain = file("plain.yaml", "plant: {type: two_link}\n");  // names no motors
+  for (const Case& c : std::vector<Case>{
+           {"pendulum", "", {"6.0", "6.0", "1"}},
+           {"moving_tile", "", {"5.0", "5.0", "2"}},
+           {"two_link", "", {"[4.0, 2.0]", "[4.0, 2.0]", "2"}},
+           {plain, "", {"[4.0, 2.0]", "[4.0, 2.0]", "2"}},
+           {with_gravity, "", {"2.5", "2.5", "1"}},
+           {with_gravity, "plant: {max_torque: 3}", {"3.0", "3.0", "1"}},
+           {with_gravity, "{plant: {max_torque: 3}, mpc: {max_torque: 1}}", {"3.0", "1", "1"}},
+           {with_gravity, "{model: {max_torque: 4}, mpc: {max_torque: 1}}", {"4", "1", "1"}},
+           {with_gravity, "robot: {max_torque: 2}", {"2", "2", "1"}},
+           {with_gravity, "robot: {max_torque: [4, 2]}", {"[4, 2]", "[4, 2]", "2"}}}) {
+    given_.set("experiment/plant", c.plant);
+    given_.configs = {file("blocks.yaml", c.blocks)};
+    EXPECT_EQ(learnersMotors(given_), c.motors) << c.plant << ", " << c.blocks;
+    EXPECT_EQ(YAML::Dump(resolve(given_).blocks).find('&'), std::string::npos) << "no aliases";
+  }
   given_.set("controller/torque_dim", 2);
-  EXPECT_EQ(learnersMotors(given_)[2], "2");
+  EXPECT_NO_THROW(resolve(given_));
   given_.set("controller/torque_dim", 3);
   EXPECT_TRUE(throwsNaming<std::invalid_argument>([this] { resolve(given_); },
                                                   {"controller/torque_dim", "robot", "got 3"}));
   given_.set("controller/torque_dim", std::string("two"));
   EXPECT_EQ(learnersMotors(given_)[2], "two") << "for the reader to refuse";
+}
+
+TEST_F(Resolution, BadMotorsOfAPlantAreLeftToTheReader) {
+  given_.set("experiment/plant", std::string("two_link"));
+  given_.configs = {file("none.yaml", "plant: {max_torque: []}\n")};
+  EXPECT_EQ(learnersMotors(given_)[2], "1");
+  given_.configs = {file("bad.yaml", "plant: {no_key: 1}\n")};
+  EXPECT_TRUE(throwsNaming<std::invalid_argument>([this] { read(); }, {"plant/no_key"}));
 }
 
 TEST_F(Resolution, ABlockThatIsNotAMapIsLeftToTheReader) {
