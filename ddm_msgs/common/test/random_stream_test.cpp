@@ -1,15 +1,11 @@
-// Tests of the random streams: one for each purpose and episode, the same in every version.
+// Test of the random streams: one for each purpose, the same in every version.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_common/random_stream.h"
 
 #include <gtest/gtest.h>
 
-#include <set>
-
 namespace ddm {
 namespace {
-
-constexpr StreamRole kRole = StreamRole::kInitialisation;
 
 TEST(RandomStream, DoesNotChangeFromOneVersionToTheNext) {
   const std::uint64_t draws[] = {// published results depend on these draws
@@ -22,15 +18,6 @@ TEST(RandomStream, DoesNotChangeFromOneVersionToTheNext) {
     EXPECT_EQ(randomStream({1, 2, false}, static_cast<StreamRole>(++role))(), draw) << role;
   }
   EXPECT_EQ(role, static_cast<std::uint32_t>(StreamRole::kGoal));
-}
-
-TEST(RandomStream, IsFixedByRunAndRole) {
-  EXPECT_EQ(randomStream({1, 2, true}, kRole), randomStream({1, 2, true}, kRole));
-  const std::set<std::uint64_t> draws = {
-      randomStream({1, 2, true}, kRole)(), randomStream({1, 2, false}, kRole)(),
-      randomStream({1, 3, true}, kRole)(), randomStream({2, 2, true}, kRole)(),
-      randomStream({1 + (1ULL << 32), 2, true}, kRole)()};
-  EXPECT_EQ(draws.size(), 5U);
 }
 
 }  // namespace
