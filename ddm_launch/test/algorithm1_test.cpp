@@ -90,16 +90,6 @@ TEST_F(ExperimentTest, TheFirstTrialIsRandomTheOthersExploreAndEvaluationsAreGre
   }
 }
 
-TEST_F(ExperimentTest, WithAModelToStartFromTheFirstTrialExploresWithIt) {
-  configuration_.start.model = "/saved.ddm";
-  configuration_.mpc.epsilon = 0.3;
-  configuration_.experiment.trials = 0;
-  run();
-  EXPECT_EQ(driver_.calls, (Calls{"use /saved.ddm", "run 0", "train 0", "evaluate 0"}));
-  EXPECT_EQ(driver_.requests[0].epsilon, 0.3);
-  EXPECT_EQ(driver_.bags_of_training[0], (Calls{file("trial_000/trial.bag")}));
-}
-
 TEST_F(ExperimentTest, BagsToStartFromCountAsTrialsBeforeTheFirst) {
   const Calls before = {scratch_.file("a.bag"), scratch_.file("b.bag")};
   for (const std::string& bag : before) testing::writeToyBag(bag);
