@@ -1,10 +1,10 @@
-// Tests of the fully connected network: values, gradients, memory.
+// Tests of the fully connected network: gradients and memory. bindings_test.py compares its values
+// with NumPy.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_model/mlp.h"
 
 #include <gtest/gtest.h>
 
-#include "ddm_model/networks.h"
 #include "ddm_model/testing/gradient_check.h"
 #include "ddm_model/testing/random_matrix.h"
 
@@ -16,20 +16,6 @@ using testing::randomMatrix;
 
 const std::vector<std::vector<int>> kDepths = {{4, 2}, {4, 5, 2}, {4, 6, 3, 6, 2}};
 const Net::Output kOutputs[] = {Net::Output::kLinear, Net::Output::kArctan};
-
-TEST(Mlp, ComputesTheDocumentedFormula) {
-  const Net net({2, 3, 1}, Net::Output::kLinear);
-  const Eigen::VectorXd theta = randomMatrix(net.numParams(), 1, 1);
-  const Eigen::MatrixXd inputs = randomMatrix(2, 5, 2);
-  Net::Tape tape;
-  net.forward(theta.data(), inputs, &tape);
-  const Eigen::Map<const Eigen::MatrixXd> w1(theta.data(), 3, 2), w2(theta.data() + 9, 1, 3);
-  for (int i = 0; i < 5; ++i) {
-    const Eigen::VectorXd hidden =
-        (w1 * inputs.col(i) + theta.segment(6, 3)).unaryExpr([](double x) { return std::atan(x); });
-    EXPECT_NEAR(tape.output()(0, i), (w2 * hidden)(0) + theta[12], 1e-14);
-  }
-}
 
 TEST(Mlp, GradientInThetaAndInputsMatchesDifferencesForEveryDepthAndOutput) {
   for (const auto& widths : kDepths) {
@@ -90,25 +76,6 @@ TEST(Mlp, RandomWeightsHaveTheSpreadOfTheirFanInAndNoBias) {
   EXPECT_NEAR(spread, 1.0 / 20.0, 0.001);
   EXPECT_EQ(net.biases(theta.data(), 0).norm(), 0.0);
   EXPECT_EQ(net.biases(theta.data(), 1).norm(), 0.0);
-}
-
-TEST(PredictionModel, TakesItsRegressorNewestFirstWithEachTorqueAfterItsFeature) {
-  ModelOptions options;
-  options.feature_dim = 3;
-  options.order = 4;
-  options.predictor = "gp";
-  const PredictionModel<double> f(options, /*torque_dim=*/2);
-  ASSERT_EQ(f.regressorDim(), 2 * 3 + 4 * 2);
-  const Eigen::VectorXd theta_p = Eigen::VectorXd::Zero(f.network().numParams());
-  Eigen::MatrixXd h = Eigen::VectorXd::LinSpaced(14, 0.0, 13.0).array().cube().matrix();
-  const Eigen::MatrixXd newest = h.topRows(3);
-  Eigen::MatrixXd expected = h;
-  expected.middleRows(5, 3) = newest - h.middleRows(5, 3);
-  Eigen::MatrixXd predicted(3, 1);
-  Mlp<double>::Tape tape;
-  f.forward(theta_p.data(), h, &tape, predicted);
-  EXPECT_EQ(h, expected) << "the last change of the feature, and torques as they were";
-  EXPECT_EQ(predicted, newest) << "a network of zeros changes nothing";
 }
 
 #ifdef __x86_64__

@@ -161,10 +161,5 @@ TEST(ModelFile, SupportStatesThatAreNoStatesAreRefused) {
   EXPECT_TRUE(isRefused(bytes(), {"no sense", "support states"}));
 }
 
-TEST(ModelFile, ItsChecksumIsTheCommonCrc32) {
-  EXPECT_EQ(checksum("123456789"), "cbf43926");  // the check value of CRC-32
-  EXPECT_EQ(checksum(""), "00000000");
-}
-
 }  // namespace
 }  // namespace ddm

@@ -139,23 +139,6 @@ TEST(Pca, SeesImagesThroughTheBlur) {
             1e-4F * scores.norm());
 }
 
-TEST(Projection, ComputesTheScoresOfSingleImagesInDouble) {
-  const DataSet data = twoBlobs(80, 12, 3);
-  const Blur blur(12, 1.5);
-  const Pca pca = fitPca(data, 6, blur);
-  const Projection projection(pca);
-  Eigen::MatrixXd images = data.pixels(0, data.numFrames()).cast<double>() / 255.0;
-  blur.apply(&images);
-  const Eigen::MatrixXd scores = static_cast<double>(pca.scale) *
-                                 pca.basis.cast<double>().transpose() *
-                                 (images.colwise() - pca.mean.cast<double>());
-  for (Eigen::Index i = 0; i < data.numFrames(); ++i) {
-    EXPECT_LT((projection(data.image(i)) - scores.col(i)).norm(), 1e-12);
-  }
-  EXPECT_LT((pca.project(data).leftCols(data.numFrames()).cast<double>() - scores).norm(),
-            1e-4 * scores.norm());  // in float
-}
-
 TEST(Pca, GivesAllImagesTheSameBrightnessButAmplifiesADarkImageAtMostFourTimes) {
   const DataSet data = twoBlobs(80, 12, 3);
   const auto scaled = [](Image image, int divisor) {
