@@ -1,4 +1,4 @@
-// Tests of the data set: segments, seams, goal images.
+// Tests of the data set: goal images.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_model/data_set.h"
 
@@ -30,17 +30,6 @@ TEST(DataSet, GivesImagesSideBySideTheGoalLast) {
     EXPECT_EQ(pixels(k, 0), data.image(2)[static_cast<size_t>(k)]);
     EXPECT_EQ(pixels(k, 1), 9 - k);
   }
-}
-
-TEST(DataSet, KeepsASeamBetweenTwoTrials) {
-  DataSet data = numbered(0, 3);
-  data.append(numbered(10, 2));
-  ASSERT_EQ(data.numFrames(), 5);
-  ASSERT_EQ(data.segments().size(), 2U);
-  EXPECT_EQ(data.segments()[1].begin, 3);
-  EXPECT_EQ(data.segments()[1].size, 2);
-  EXPECT_EQ(data.image(3)[0], 10);
-  EXPECT_EQ(data.torques()(0, 4), 11.0);
 }
 
 TEST(DataSet, TheLastGoalThatIsAppendedCounts) {
