@@ -148,7 +148,8 @@ TEST_F(BagDamage, ARecordingThatWasNotCompletedIsRecoveredByTheCommandThatTheErr
   }
   fs::copy_file(path_ + ".active", left);  // what a killed recorder leaves
   EXPECT_TRUE(throwsNaming<std::runtime_error>(
-      [&] { BagWriter(folder_.file("killed.bag"), BagOptions()); }, {"`rosbag reindex " + left}));
+      [&] { BagWriter(folder_.file("killed.bag"), BagOptions()); },
+      {left + " exists already", "`rosbag reindex " + left, "remove it"}));
   const testing::Outcome outcome = testing::run("rosbag reindex " + left);
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   fs::rename(left, folder_.file("killed.bag"));

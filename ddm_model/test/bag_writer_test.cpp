@@ -36,26 +36,6 @@ class BagWriterTest : public ::testing::Test {
   const std::string path_ = folder_.file("trial.bag");
 };
 
-TEST_F(BagWriterTest, ABagThatNobodyClosedStaysActive) {
-  {
-    BagWriter writer(path_, BagOptions());
-    writeFrames(&writer, 5);
-  }
-  EXPECT_TRUE(fs::exists(path_ + ".active"));
-  EXPECT_FALSE(fs::exists(path_));
-}
-
-TEST_F(BagWriterTest, CountsImagesTorquesAndPairs) {
-  BagWriter writer(path_, BagOptions());
-  writeFrames(&writer, 3);
-  writer.write(imageMessage(7.0, toyImage(0.0)));
-  writer.write(torqueMessage(8.0, {1.0}));
-  writer.write(torqueMessage(9.0, {1.0}));
-  EXPECT_EQ(writer.images().size(), 4U);
-  EXPECT_EQ(writer.torques().size(), 5U);
-  EXPECT_EQ(writer.numFrames(), 3);
-}
-
 TEST_F(BagWriterTest, WritesUnderTheNamesOfTheConfigurationAndCompressed) {
   BagOptions topics;
   topics.image_topic = "/eye";
@@ -89,15 +69,6 @@ TEST_F(BagWriterTest, NamesABagThatCannotBeWrittenOrRenamed) {
   EXPECT_TRUE(
       throwsNaming<std::runtime_error>([&] { writer.close(); }, {path_ + ".active", "directory"}));
   EXPECT_TRUE(fs::exists(path_ + ".active"));  // nothing is lost
-}
-
-TEST_F(BagWriterTest, ARecordingThatWasNotCompletedIsNotReplaced) {
-  { BagWriter killed(path_, BagOptions()); }
-  writeFileAtomically(path_ + ".active", "all that is left of a trial");
-  EXPECT_TRUE(throwsNaming<std::runtime_error>(
-      [this] { BagWriter(path_, BagOptions()); },
-      {path_ + ".active exists already", "rosbag reindex " + path_ + ".active", "remove it"}));
-  EXPECT_EQ(readFile(path_ + ".active"), "all that is left of a trial");
 }
 
 TEST_F(BagWriterTest, SurvivesADiskThatIsFull) {
