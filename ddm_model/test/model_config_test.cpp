@@ -62,12 +62,5 @@ TEST(ModelConfig, RefusesEachValueOutOfRangeWithItsKeyRuleAndValue) {
   }
 }
 
-TEST(ModelConfig, ReportsTheProblemsOfAllBlocksAtOnce) {
-  ParamReader reader(YAML::Load("{image: {size: 0}, model: {ordre: 3}, training: {solver: 7}}"));
-  readModelConfig(&reader);
-  EXPECT_TRUE(throwsNaming<std::invalid_argument>(
-      [&] { reader.requireValid(); }, {"image/size", "model/ordre", "training/solver"}));
-}
-
 }  // namespace
 }  // namespace ddm
