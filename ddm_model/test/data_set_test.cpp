@@ -7,19 +7,17 @@
 namespace ddm {
 namespace {
 
-Eigen::VectorXd torque(double value) { return Eigen::VectorXd::Constant(1, value); }
-
 /// Frames of 2 x 2 pixels that all have the grey value and torque of their index.
-DataSet numbered(int first, int count) {
+DataSet numbered(int count) {
   DataSet data(2, 1);
-  for (int i = first; i < first + count; ++i) {
-    data.append(Image(4, static_cast<std::uint8_t>(i)), torque(i), i == first);
+  for (int i = 0; i < count; ++i) {
+    data.append(Image(4, static_cast<std::uint8_t>(i)), Eigen::VectorXd::Constant(1, i), i == 0);
   }
   return data;
 }
 
 TEST(DataSet, GivesImagesSideBySideTheGoalLast) {
-  DataSet data = numbered(0, 3);
+  DataSet data = numbered(3);
   EXPECT_EQ(data.numImages(), 3);
   data.setGoal({9, 8, 7, 6});
   ASSERT_EQ(data.numImages(), 4);
@@ -33,17 +31,15 @@ TEST(DataSet, GivesImagesSideBySideTheGoalLast) {
 }
 
 TEST(DataSet, TheLastGoalThatIsAppendedCounts) {
-  DataSet with_goal = numbered(0, 1);
-  with_goal.setGoal(Image(4, 9));
-  DataSet data = numbered(0, 1);
+  DataSet data = numbered(1);
   EXPECT_FALSE(data.hasGoal());
-  data.append(with_goal);
-  EXPECT_EQ(data.goal(), Image(4, 9));
-  DataSet other = numbered(0, 1);
-  other.setGoal(Image(4, 7));
-  data.append(other);
-  EXPECT_EQ(data.goal(), Image(4, 7));
-  data.append(numbered(0, 1));
+  for (const std::uint8_t grey : {9, 7}) {
+    DataSet with_goal = numbered(1);
+    with_goal.setGoal(Image(4, grey));
+    data.append(with_goal);
+    EXPECT_EQ(data.goal(), Image(4, grey));
+  }
+  data.append(numbered(1));
   EXPECT_EQ(data.goal(), Image(4, 7));
 }
 
