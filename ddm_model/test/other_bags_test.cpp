@@ -42,6 +42,22 @@ double commandedAt(double time) {
 
 double angleOf(int image) { return 0.05 * image; }
 
+/// Torques whose messages have neither a header nor names.
+template <class Message>
+Message numberOf(double u) {
+  Message message;
+  message.data = static_cast<decltype(message.data)>(u);
+  return message;
+}
+template <class Message>
+Message arrayOf(double u) {
+  Message message;
+  message.data = {static_cast<typename decltype(message.data)::value_type>(u)};
+  return message;
+}
+
+std_msgs::Float64 floatOf(double u) { return numberOf<std_msgs::Float64>(u); }
+
 class OtherBags : public testing::BagTest {
  protected:
   OtherBags() {
@@ -64,12 +80,15 @@ class OtherBags : public testing::BagTest {
     bag_->write(topic, ros::Time(time), message, header);
   }
   /// A controller's torque on each image of frame k, with no torque in between.
+  /// @param make  message of frame k with its torque
   template <class Make>
   void writeTorquePerFrame(const Make& make, double lag = 0.0) {
     for (int k = 0; k < kFrames; ++k) {
-      const double time = kBegin + kDt * k + kLatency;
-      write("command", time + lag, make(time, torqueOf(k)));
+      write("command", kBegin + kDt * k + kLatency + lag, make(k, torqueOf(k)));
     }
+  }
+  void writeFloatPerFrame(double lag = 0.0) {
+    writeTorquePerFrame([](int, double u) { return floatOf(u); }, lag);
   }
   /// An image for each frame.
   /// @param stampOf  of frame k
@@ -81,32 +100,21 @@ class OtherBags : public testing::BagTest {
     }
   }
   /// A camera of 30 Hz.
-  template <class IsThere>
-  void writeImages(const IsThere& isThere, double jitter = 0.0) {
+  void writeImages(const std::function<bool(int)>& isThere = [](int) { return true; }) {
     for (int i = 0; i < kFrames * kImagesPerFrame; ++i) {
       if (!isThere(i)) continue;
-      const double stamp = kBegin + kDt / kImagesPerFrame * i + jitter * std::sin(7.0 * i);
+      const double stamp = kBegin + kDt / kImagesPerFrame * i;
       write("camera/image_raw", stamp + 0.005, imageMessage(stamp, toyImage(angleOf(i))));
     }
   }
-  void writeImages() {
-    writeImages([](int) { return true; });
-  }
-  /// 50 messages a second, made of time and torque.
+  /// 50 messages a second.
   template <class Make>
   void writeTorques(const Make& make) {
     for (double time = kLatency; time < kDt * kFrames + kLatency; time += 0.02) {
-      write("command", kBegin + time, make(kBegin + time, commandedAt(time)));
+      write("command", kBegin + time, make(commandedAt(time)));
     }
   }
-  void writeFloats() {
-    writeTorques([](double, double u) { return floatOf(u); });
-  }
-  static std_msgs::Float64 floatOf(double u) {
-    std_msgs::Float64 message;
-    message.data = u;
-    return message;
-  }
+  void writeFloats() { writeTorques(floatOf); }
   static sensor_msgs::JointState jointsOf(const std::vector<std::string>& names,
                                           const std::vector<double>& efforts, double stamp = 0.0) {
     sensor_msgs::JointState message;
@@ -138,25 +146,11 @@ class OtherBags : public testing::BagTest {
   std::unique_ptr<rosbag::Bag> bag_ = std::make_unique<rosbag::Bag>(path_, rosbag::bagmode::Write);
 };
 
-/// Torques whose messages have neither a header nor names.
-template <class Message>
-Message numberOf(double u) {
-  Message message;
-  message.data = static_cast<decltype(message.data)>(u);
-  return message;
-}
-template <class Message>
-Message arrayOf(double u) {
-  Message message;
-  message.data = {static_cast<typename decltype(message.data)::value_type>(u)};
-  return message;
-}
-
 TEST_F(OtherBags, NumbersAndArraysWithoutAHeader) {
   const auto expectReadable = [this](auto make) {
     open();
     writeImages();
-    writeTorques([&make](double, double u) { return make(u); });
+    writeTorques(make);
     close();
     expectTorques();
     EXPECT_TRUE(notes({}));
@@ -172,7 +166,7 @@ TEST_F(OtherBags, NumbersAndArraysWithoutAHeader) {
 
 TEST_F(OtherBags, PartsOfAWrenchByName) {
   writeImages();
-  writeTorques([](double, double u) {
+  writeTorques([](double u) {
     geometry_msgs::WrenchStamped message;
     message.wrench.force.z = 100.0;
     message.wrench.torque.z = u;
@@ -188,7 +182,7 @@ TEST_F(OtherBags, PartsOfAWrenchByName) {
 
 TEST_F(OtherBags, EffortsOfJointsByName) {
   writeImages();
-  writeTorques([](double, double u) { return jointsOf({"gripper", "arm"}, {5.0, u}); });
+  writeTorques([](double u) { return jointsOf({"gripper", "arm"}, {5.0, u}); });
   for (int i = 0; i < 10; ++i) {  // others publish theirs on the same topic
     write("command", kBegin + 0.1 * i, jointsOf({"wheel"}, {7.0}));
     write("command", kBegin + 0.1 * i, jointsOf({"caster"}, {}));
@@ -205,7 +199,7 @@ TEST_F(OtherBags, EffortsOfJointsByName) {
 
 TEST_F(OtherBags, PublishersWithoutEffortOfTheJointsDoNotCount) {
   writeImages();
-  writeTorques([](double, double u) { return jointsOf({"gripper", "arm"}, {5.0, u}); });
+  writeTorques([](double u) { return jointsOf({"gripper", "arm"}, {5.0, u}); });
   const double unknown = std::nan("");
   for (int i = 0; i < 10; ++i) {
     write("command", kBegin + 0.1 * i, jointsOf({"arm", "gripper"}, {}), "/positions");
@@ -218,7 +212,7 @@ TEST_F(OtherBags, PublishersWithoutEffortOfTheJointsDoNotCount) {
 
 TEST_F(OtherBags, ALagOfTheRecorderDoesNotMoveTorquesWithoutStamps) {
   writeImagePerFrame([](int k) { return kBegin + kDt * k; }, /*lag=*/0.5);
-  writeTorquePerFrame([](double, double u) { return floatOf(u); }, /*lag=*/0.5);
+  writeFloatPerFrame(/*lag=*/0.5);
   close();
   expectTorques();
   EXPECT_TRUE(notes({{"0.5 s after their stamps", "model/order by 5"}}));
@@ -248,9 +242,7 @@ TEST_F(OtherBags, WhereAClockCannotBeTrustedRecordingTimesCount) {
     SCOPED_TRACE(row.fault);
     open();
     writeImagePerFrame(row.image);
-    int frame = 0;
-    writeTorquePerFrame(
-        [&](double, double u) { return jointsOf({"arm"}, {u}, row.torque(frame++)); });
+    writeTorquePerFrame([&](int k, double u) { return jointsOf({"arm"}, {u}, row.torque(k)); });
     close();
     const DataSet data = read().data;
     expectTorques();
@@ -264,7 +256,8 @@ TEST_F(OtherBags, WhereAClockCannotBeTrustedRecordingTimesCount) {
 
 TEST_F(OtherBags, StampsOfTwoClocksThatOverlapAreReported) {
   writeImagePerFrame([](int k) { return kBegin + kDt * k - 0.7; });
-  writeTorquePerFrame([](double time, double u) { return jointsOf({"arm"}, {u}, time); });
+  writeTorquePerFrame(
+      [](int k, double u) { return jointsOf({"arm"}, {u}, kBegin + kDt * k + kLatency); });
   close();
   EXPECT_EQ(read().data.numFrames(), kFrames - 7);
   EXPECT_TRUE(notes({{"0.7 s after their stamps", "0 s after theirs"},
@@ -338,7 +331,7 @@ TEST_F(OtherBags, AFewImagesThatTheRecorderGotLateMoveNoTorque) {
     write("camera/image_raw", time + (k % 5 == 2 ? 0.09 : 0.0),
           imageMessage(time, toyImage(0.1 * k)));
   }
-  writeTorquePerFrame([](double, double u) { return floatOf(u); });
+  writeFloatPerFrame();
   close();
   expectTorques();
   EXPECT_TRUE(notes({}));
@@ -346,7 +339,7 @@ TEST_F(OtherBags, AFewImagesThatTheRecorderGotLateMoveNoTorque) {
 
 TEST_F(OtherBags, TorquesThatAreAllZeroAreReported) {
   writeImages();
-  writeTorques([](double, double) { return floatOf(0.0); });
+  writeTorques([](double) { return floatOf(0.0); });
   close();
   EXPECT_TRUE(notes({{"all its torques are 0"}}));
 }
@@ -389,26 +382,24 @@ TEST_F(OtherBags, TwoControllersAtOnceAreRefused) {
   EXPECT_TRUE(isRefused({"command", "/teleop (10 from 10.0", "/controller (10 from 10.1"}));
 }
 
-TEST_F(OtherBags, ControllersOneAfterTheOtherAndThoseWithoutANameAreNoTwoAtOnce) {
-  writeImages();
-  for (int k = 0; k < kFrames; ++k) {
-    const char* const publisher = k % 5 == 1 ? "" : k < 10 ? "/first" : "/second";
-    write("command", kBegin + kDt * k + kLatency, floatOf(torqueOf(k)), publisher);
-  }
-  close();
-  expectAllFrames();
-  EXPECT_TRUE(notes({{"/first (8 from 10.0", "/second (8 from 11.0", "one after the other"}}));
-}
-
-TEST_F(OtherBags, ControllersThatTakeTurnsAreNoTwoAtOnce) {
-  writeImages();
-  for (int k = 0; k < kFrames; ++k) {
-    const char* const publisher = k >= 5 && k < 10 ? "/teleop" : "/controller";
-    write("command", kBegin + kDt * k + kLatency, floatOf(torqueOf(k)), publisher);
-  }
-  close();
-  expectAllFrames();
-  EXPECT_TRUE(notes({{"/controller (15 from 10.0", "/teleop (5 from 10.5", "after the other"}}));
+TEST_F(OtherBags, ControllersThatActOneAfterTheOtherAndThoseWithoutANameAreNoTwoAtOnce) {
+  const auto expectReadable = [this](const std::function<const char*(int)>& publisherOf,
+                                     const std::vector<std::string>& words) {
+    open();
+    writeImages();
+    for (int k = 0; k < kFrames; ++k) {
+      write("command", kBegin + kDt * k + kLatency, floatOf(torqueOf(k)), publisherOf(k));
+    }
+    close();
+    expectAllFrames();
+    EXPECT_TRUE(notes({words}));
+  };
+  expectReadable([](int k) { return k % 5 == 1 ? ""
+                                    : k < 10   ? "/first"
+                                               : "/second"; },
+                 {"/first (8 from 10.0", "/second (8 from 11.0", "one after the other"});
+  expectReadable([](int k) { return k >= 5 && k < 10 ? "/teleop" : "/controller"; },
+                 {"/controller (15 from 10.0", "/teleop (5 from 10.5", "after the other"});
 }
 
 TEST_F(OtherBags, ARecordingWhoseClockWasSetBackIsRefusedAndMergedBagsAreNot) {
@@ -460,32 +451,33 @@ TEST_F(OtherBags, OtherClocksAreRefusedWithBothSpans) {
   EXPECT_TRUE(isRefused({"from 10.0", "to 11.9", "from 5000.0", "to 5001.0", "one clock"}));
 }
 
+/// The bytes of an image file, as an image_transport publishes them.
+sensor_msgs::CompressedImage compressedImage(double stamp, const std::string& format,
+                                             const std::string& bytes) {
+  sensor_msgs::CompressedImage message;
+  message.header.stamp = ros::Time(stamp);
+  message.format = format;
+  message.data.assign(bytes.begin(), bytes.end());
+  return message;
+}
+
 TEST_F(OtherBags, CompressedImagesAreUnpacked) {
-  const auto compressed = [this](double stamp, const char* suffix,
-                                 const sensor_msgs::Image& image) {
-    const std::string file = folder_.file(std::string("file") + suffix);
-    writeImageFile(file, image);
-    const std::string bytes = readFile(file);
-    sensor_msgs::CompressedImage message;
-    message.header.stamp = ros::Time(stamp);
-    message.format = stamp < kBegin + 0.5 ? suffix + 1 : "";  // drivers change what they call it
-    message.data.assign(bytes.begin(), bytes.end());
-    return message;
-  };
-  for (const char* suffix : {".png", ".jpg"}) {
+  for (const std::string format : {"png", "jpg"}) {
     open();
-    for (int i = 0; i < kFrames; ++i) {
-      write("camera/image_raw", kBegin + kDt * i,
-            compressed(kBegin + kDt * i, suffix, imageMessage(0.0, toyImage(angleOf(i)))));
+    for (int k = 0; k < kFrames; ++k) {
+      const std::string file = folder_.file("file." + format);
+      writeImageFile(file, imageMessage(0.0, toyImage(angleOf(k))));
+      const double stamp = kBegin + kDt * k;  // drivers change what they call the format
+      write("camera/image_raw", stamp, compressedImage(stamp, k < 5 ? format : "", readFile(file)));
     }
     writeFloats();
     close();
     const BagContent content = read();
-    EXPECT_EQ(content.camera, "8x8 " + std::string(suffix + 1));
+    EXPECT_EQ(content.camera, "8x8 " + format);
     ASSERT_EQ(content.data.numFrames(), kFrames);
     const Image truth = toyImage(angleOf(5)), grey = content.data.image(5);
     for (size_t i = 0; i < truth.size(); ++i) {
-      EXPECT_NEAR(grey[i], truth[i], suffix == std::string(".png") ? 0 : 25) << suffix;
+      EXPECT_NEAR(grey[i], truth[i], format == "png" ? 0 : 25) << format;
     }
   }
 }
@@ -494,17 +486,14 @@ TEST_F(OtherBags, ABrokenJpegLeavesAGapThatIsTold) {
   const std::string file = folder_.file("file.jpg");
   writeImageFile(file, imageMessage(0.0, toyImage(1.0, 64), 64));
   const std::string bytes = readFile(file);
-  for (const double part : {0.05, 0.7}) {  // of the header alone, and of the pixels
+  for (const size_t part : {bytes.size() / 20, bytes.size() * 7 / 10}) {  // header alone, or pixels
     open();
     for (int k = 0; k < kFrames; ++k) {
-      sensor_msgs::CompressedImage message;
-      message.header.stamp = ros::Time(kBegin + kDt * k);
-      message.format = "jpeg";
-      const double size = static_cast<double>(bytes.size()) * (k == 12 ? part : 1.0);
-      message.data.assign(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
-      write("camera/image_raw/compressed", kBegin + kDt * k, message);
+      const double stamp = kBegin + kDt * k;
+      write("camera/image_raw/compressed", stamp,
+            compressedImage(stamp, "jpeg", k == 12 ? bytes.substr(0, part) : bytes));
     }
-    writeTorquePerFrame([](double, double u) { return floatOf(u); });
+    writeFloatPerFrame();
     close();
     const BagContent content = read();
     ASSERT_EQ(content.data.segments().size(), 2U);
