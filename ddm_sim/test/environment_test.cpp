@@ -73,18 +73,6 @@ TEST(Environment, GoesOnUnderTheSameTorqueUntilAFrameIsSeenAndCountsTheLostOnes)
   EXPECT_GT(steps, 40U);
 }
 
-TEST(Environment, BeginsARunAtAGivenStartDigitByDigitWithTheFramesOfThatRun) {
-  Environment environment(quickPlant(), allNuisances());
-  const Eigen::Vector2d start(0.1 + 0.2, -1e-17);
-  const RenderedImage first = environment.reset({kSeed, kTrial, true}, start);
-  EXPECT_EQ(environment.plant().state(), start);
-  ByHand by_hand;
-  by_hand.begin();
-  by_hand.plant.setState(start);
-  by_hand.camera.begin({kSeed, kTrial, true});
-  EXPECT_EQ(first.bytes, by_hand.look()->bytes);
-}
-
 TEST(Environment, ChangesNothingWhereAStartIsRefused) {
   ToyPlant::Traits traits = testing::colourfulToy();
   Environment environment(std::make_unique<ToyPlant>(traits), allNuisances());
