@@ -9,9 +9,11 @@
 #include <opencv2/imgcodecs.hpp>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "ddm_common/plain_file.h"
+#include "ddm_msgs/testing/expect_error.h"
 #include "ddm_msgs/testing/run_program.h"
 #include "ddm_msgs/testing/temp_folder.h"
 #include "ddm_sim/moving_tile.h"
@@ -55,6 +57,16 @@ class Simulate : public ::testing::Test {
   static Outcome run(const std::string& options, const std::string& input,
                      const std::string& setting = "") {
     return testing::run(setting + " " DDM_SIM_SIMULATE " " + options, input);
+  }
+
+  /// Expects that the program ends with this exit code, names all words and writes no trajectory.
+  static void expectRefused(int exit_code, const std::string& options,
+                            const std::vector<std::string>& words,
+                            const std::string& input = "torque_nm\n1\n") {
+    const Outcome outcome = run(options, input);
+    EXPECT_EQ(outcome.exit_code, exit_code) << options;
+    EXPECT_TRUE(testing::names(outcome.err, words)) << options;
+    EXPECT_EQ(outcome.out, "") << options;
   }
 
   const testing::TempFolder temp_;
@@ -164,8 +176,7 @@ TEST_F(SimulateModelFile, NamesTheStepOfEglThatFails) {
     const Outcome outcome = run("--plant suite_pendulum --frames " + (folder_ / "none").string(),
                                 "torque_nm\n", setting);
     EXPECT_EQ(outcome.exit_code, 1);
-    EXPECT_TRUE(contains(outcome.err, step)) << outcome.err;
-    EXPECT_TRUE(contains(outcome.err, "libgl1-mesa-dri")) << outcome.err;
+    EXPECT_TRUE(testing::names(outcome.err, {step, "libgl1-mesa-dri"}));
   }
 }
 
@@ -181,68 +192,44 @@ TEST_F(SimulateModelFile, DescribesAModelFile) {
 
 #if !DDM_HAS_MUJOCO
 TEST_F(Simulate, SaysWhatIsMissingForAModelFile) {
-  const Outcome result = run("--plant suite_pendulum", "torque_nm\n");
-  EXPECT_EQ(result.exit_code, 1);
-  EXPECT_TRUE(contains(result.err, "libmujoco-dev")) << result.err;
+  expectRefused(1, "--plant suite_pendulum", {"libmujoco-dev"});
 }
 #endif
 
-TEST_F(Simulate, ListsTheKnownPlantsWhenThePlantIsUnknown) {
+TEST_F(Simulate, RefusesAWrongCommandLineAndNamesTheWordAndTheRemedy) {
   for (const char* plant : {"cart", "sim", "../config/pendulum", "''"}) {
-    const Outcome result = run(std::string("--plant ") + plant, "torque_nm\n");
-    EXPECT_EQ(result.exit_code, 2) << plant;
-    for (const char* known : {"moving_tile, ", "pendulum, pendulum_gravity, ", "two_link"}) {
-      EXPECT_TRUE(contains(result.err, known)) << result.err;
-    }
-    EXPECT_EQ(result.out, "");
+    expectRefused(2, std::string("--plant ") + plant,
+                  {"moving_tile, ", "pendulum, pendulum_gravity, ", "two_link"});
   }
-}
-
-TEST_F(Simulate, RefusesAWrongCommandLineAndNamesTheWord) {
-  const std::vector<std::pair<std::string, std::string>> cases{
-      {"", "--plant"},
-      {"--plant pendulum --strat 3", "--strat"},
-      {"--plant pendulum --start", "--start"},
-      {"--plant pendulum --start 1", "2 finite number(s) (angle_rad,rate_rad_per_s), got \"1\""},
-      {"--plant pendulum --start 1,nan", "got \"1,nan\""},
-      {"--plant pendulum trajectory.csv", "trajectory.csv"}};
-  for (const auto& [options, word] : cases) {
-    const Outcome result = run(options, "torque_nm\n1\n");
-    EXPECT_EQ(result.exit_code, 2) << options;
-    EXPECT_TRUE(contains(result.err, word)) << options << ": " << result.err;
-    EXPECT_EQ(result.out, "") << options;
-  }
+  expectRefused(2, "", {"--plant"});
+  expectRefused(2, "--plant pendulum --strat 3", {"--strat"});
+  expectRefused(2, "--plant pendulum --start", {"--start"});
+  expectRefused(2, "--plant pendulum --start 1",
+                {"2 finite number(s) (angle_rad,rate_rad_per_s), got \"1\""});
+  expectRefused(2, "--plant pendulum --start 1,nan", {"got \"1,nan\""});
+  expectRefused(2, "--plant pendulum trajectory.csv", {"trajectory.csv"});
+  expectRefused(2, "--plant ./robt.yaml", {"'./robt.yaml': there is no such file"});
+  expectRefused(2, "--plant ./robot.urdf", {"new_plant ./robot.urdf"});
+  expectRefused(2, "--plant robot.xml", {"new_plant robot.xml"});
 }
 
 TEST_F(Simulate, RefusesBadTorquesAndWritesNothing) {
-  const std::vector<std::pair<std::string, std::string>> cases{{"", "line 1"},
-                                                               {"torque_nm\n1\nnan\n", "line 3"}};
-  for (const auto& [input, line] : cases) {
-    const fs::path frames = folder_ / "frames";
-    const Outcome result = run("--plant pendulum --frames " + frames.string(), input);
-    EXPECT_EQ(result.exit_code, 1) << input;
-    EXPECT_TRUE(contains(result.err, line)) << result.err;
-    EXPECT_EQ(result.out, "");
-    EXPECT_FALSE(fs::exists(frames));
-  }
+  const fs::path frames = folder_ / "frames";
+  const std::string options = "--plant pendulum --frames " + frames.string();
+  expectRefused(1, options, {"line 1"}, "");
+  expectRefused(1, options, {"line 3"}, "torque_nm\n1\nnan\n");
+  EXPECT_FALSE(fs::exists(frames));
 }
 
 TEST_F(Simulate, RefusesABadConfigurationFile) {
   const std::string path = (folder_ / "bad.yaml").string();
-  const std::vector<std::pair<std::string, std::string>> cases{
-      {"plant: {dt: -1}\n", "plant/dt"},
-      {"plant: {lenght: 1}\n", "lenght"},
-      {"plant: {type: cart}\n", "plant/type"}};
-  for (const auto& [yaml, word] : cases) {
+  for (const auto& [yaml, word] : {std::make_pair("plant: {dt: -1}\n", "plant/dt"),
+                                   std::make_pair("plant: {lenght: 1}\n", "lenght"),
+                                   std::make_pair("plant: {type: cart}\n", "plant/type")}) {
     std::ofstream(path) << yaml;
-    const Outcome result = run("--plant pendulum --config " + path, "torque_nm\n1\n");
-    EXPECT_EQ(result.exit_code, 1) << yaml;
-    EXPECT_TRUE(contains(result.err, word)) << result.err;
-    EXPECT_EQ(result.out, "");
+    expectRefused(1, "--plant pendulum --config " + path, {word});
   }
-  const Outcome missing = run("--plant pendulum --config /no/such.yaml", "torque_nm\n1\n");
-  EXPECT_EQ(missing.exit_code, 1);
-  EXPECT_TRUE(contains(missing.err, "/no/such.yaml")) << missing.err;
+  expectRefused(1, "--plant pendulum --config /no/such.yaml", {"/no/such.yaml"});
 }
 
 TEST_F(Simulate, NoticesWhenItsOutputCannotBeWritten) {
@@ -250,17 +237,6 @@ TEST_F(Simulate, NoticesWhenItsOutputCannotBeWritten) {
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_TRUE(contains(outcome.err, "standard output"));
   EXPECT_EQ(run("--plant pendulum --describe > /dev/full", "").exit_code, 1);
-}
-
-TEST_F(Simulate, TellsThatAPlantFileIsMissingOrHowAModelFileBecomesOne) {
-  const Outcome missing = run("--plant ./robt.yaml", "");
-  EXPECT_EQ(missing.exit_code, 2);
-  EXPECT_TRUE(contains(missing.err, "'./robt.yaml': there is no such file")) << missing.err;
-  for (const char* model : {"./robot.urdf", "robot.xml"}) {
-    const Outcome outcome = run(std::string("--plant ") + model, "");
-    EXPECT_EQ(outcome.exit_code, 2);
-    EXPECT_TRUE(contains(outcome.err, std::string("new_plant ") + model)) << outcome.err;
-  }
 }
 
 }  // namespace
