@@ -47,6 +47,11 @@ class ModelFolder {
   TempFolder folder_;
 };
 
+/// The text with the first `from` replaced.
+inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  return text.replace(text.find(from), from.size(), to);
+}
+
 /// MJCF of an arm with two links (0.2 m and 0.1 m) that moves in a plane, with a motor at each
 /// joint.
 inline std::string armText(const std::string& more = "") {

@@ -20,6 +20,7 @@ using testing::armUrdf;
 using testing::kTetrahedron;
 using testing::ModelFolder;
 using testing::refusalOf;
+using testing::replaced;
 
 class MujocoModelTest : public ::testing::Test {
  protected:
@@ -136,15 +137,6 @@ TEST_F(MujocoModelTest, DrawsNoCollisionShapeOfAUrdfOverAVisualOne) {
   EXPECT_EQ(drawnCylinders("</link>"), 1);  // the link has no visual shapes
 }
 
-TEST_F(MujocoModelTest, FindsPlacesAmongSitesAndBodies) {
-  const auto arm = folder_.loadText(armText());
-  EXPECT_EQ(arm->place("tip", "plant/error_sites").type, mjOBJ_SITE);
-  EXPECT_EQ(folder_.loadText(armUrdf(), "arm.urdf")->place("lower", "plant/error_sites").type,
-            mjOBJ_BODY);
-  const std::string text = refusalOf([&] { arm->place("top", "plant/error_sites"); });
-  EXPECT_NE(text.find("tip?"), std::string::npos) << text;
-}
-
 TEST_F(MujocoModelTest, SaysThatAWordMayBeOfANewerMujoco) {
   const std::string version = mj_versionString();
   EXPECT_TRUE(
@@ -154,8 +146,7 @@ TEST_F(MujocoModelTest, SaysThatAWordMayBeOfANewerMujoco) {
 }
 
 TEST_F(MujocoModelTest, TakesARangeForALimitAsNewerVersionsDo) {
-  std::string text = armText();
-  text.erase(text.find("limited=\"true\" range"), 15);
+  const std::string text = replaced(armText(), "limited=\"true\" range", "range");
   EXPECT_EQ(folder_.loadText(text)->get().jnt_limited[1], 1);
 }
 
@@ -168,8 +159,7 @@ TEST_F(MujocoModelTest, FindsPackagesInMeshesOfAnMjcfButNotInItsComments) {
 }
 
 TEST_F(MujocoModelTest, RefusesNumbersThatAreNotFinite) {
-  std::string text = armText();
-  text.replace(text.find("damping=\"0.1\""), 13, "damping=\"nan\"");
+  const std::string text = replaced(armText(), "damping=\"0.1\"", "damping=\"nan\"");
   EXPECT_TRUE(
       isRefused(folder_.write("a.xml", text), {"plant/model", "not finite", "dof_damping"}));
 }

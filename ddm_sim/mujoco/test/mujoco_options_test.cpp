@@ -25,6 +25,7 @@ using testing::armUrdf;
 using testing::ModelFolder;
 using testing::plantOf;
 using testing::refusalOf;
+using testing::replaced;
 using testing::urdfOptions;
 
 using Words = std::vector<std::string>;
@@ -37,10 +38,6 @@ MujocoOptions with(const MujocoOptions& options, const std::string& yaml) {
     blocks["plant"][one.first.as<std::string>()] = one.second;
   }
   return ParamReader(blocks).read<MujocoOptions>("plant");
-}
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  return text.replace(text.find(from), from.size(), to);
 }
 
 TEST(MujocoOptions, AreRefusedByNameWhereTheyDoNotFitTheModel) {
@@ -67,9 +64,9 @@ TEST(MujocoOptions, AreRefusedByNameWhereTheyDoNotFitTheModel) {
       {"plant/max_torque", "shoulder", "effort"}));
 }
 
-TEST(MujocoOptions, AreRefusedForAModelWithoutUsableJointsOrMotors) {
+TEST(MujocoOptions, AreRefusedForAModelWhoseJointsMotorsOrTimestepCannotBeUsed) {
   const std::string control = "ctrlrange=\"-0.5 0.5\"", limit = "ctrllimited=\"true\" " + control,
-                    joint = "axis=\"0 0 1\" damping=\"0.1\"/>";
+                    joint = "axis=\"0 0 1\" damping=\"0.1\"/>", timestep = "timestep=\"0.01\"";
   const std::tuple<std::string, std::string, Words> flaws[] = {
       {"gear=\"2\" " + limit, "gear=\"2\"", {"plant/max_torque", "shoulder", "ctrlrange"}},
       {"<motor name=\"first\" joint=\"shoulder\" gear=\"2\"",
@@ -79,7 +76,11 @@ TEST(MujocoOptions, AreRefusedForAModelWithoutUsableJointsOrMotors) {
       {"<worldbody>",
        "<worldbody><body><freejoint name=\"loose\"/><geom size=\"0.1\"/></body>",
        {"plant/model", "free joint", "loose"}},
-      {joint, "type=\"ball\"/>", {"shoulder"}}};
+      {joint, "type=\"ball\"/>", {"shoulder"}},
+      {joint, "axis=\"0 0 1\" damping=\"-3\"/>", {"shoulder", "model.xml", "damping >= 0", "-3"}},
+      {timestep, "timestep=\"0\"", {"timestep of", "model.xml", "at least 2e-05 s, got 0"}},
+      {timestep, "timestep=\"1e-06\"", {"at least 2e-05", "1e-06", "plant/timestep"}},
+      {timestep, "timestep=\"-0.01\"", {"at least 2e-05", "-0.01", "plant/timestep"}}};
   for (const auto& flaw : flaws) {
     const std::string text = replaced(armText(), std::get<0>(flaw), std::get<1>(flaw));
     EXPECT_TRUE(testing::names(refusalOf([&] { plantOf(text, armOptions()); }), std::get<2>(flaw)));

@@ -47,20 +47,24 @@ std::string pendulum(const std::string& limit, const std::string& axis = "0 1 0"
   return robot(rodLink("rod") + jointOf("hinge", "continuous", "base", "rod", axis, limit));
 }
 
-/// A cart on a rail along x, with a pole on the cart.
-std::string cartPole(const std::string& rail) {
+/// A cart on a rail of 2 m along x, with a pole on the cart.
+std::string cartPole() {
   return robot(
       "<link name='cart'><inertial><mass value='1'/><inertia ixx='0.01' iyy='0.01' izz='0.01' "
       "ixy='0' ixz='0' iyz='0'/></inertial><visual><geometry><box size='0.3 0.2 0.1'/>"
       "</geometry></visual></link>" +
-      rodLink("pole") + jointOf("rail", "prismatic", "base", "cart", "1 0 0", rail) +
+      rodLink("pole") +
+      jointOf("rail", "prismatic", "base", "cart", "1 0 0",
+              "<limit lower='-1' upper='1' effort='9' velocity='1'/>") +
       jointOf("pivot", "continuous", "cart", "pole", "0 1 0", ""));
 }
 
 class Proposal : public ::testing::Test {
  protected:
-  PlantProposal propose(const std::string& text, const std::string& name = "robot.urdf") {
-    model_ = folder_.loadText(text, name);
+  /// @param text  MJCF or URDF
+  PlantProposal propose(const std::string& text) {
+    const bool is_mjcf = text.rfind("<mujoco>", 0) == 0;
+    model_ = folder_.loadText(text, is_mjcf ? "robot.xml" : "robot.urdf");
     return proposePlant(model_, {}, {});
   }
 
@@ -117,10 +121,10 @@ TEST_F(Proposal, MotorsOfAnMjcfFileAreItsActuatorsAndServosBecomeTorques) {
            actuator + "</actuator></mujoco>";
   };
   const PlantProposal motor =
-      propose(arm("<motor joint='swing' ctrllimited='true' ctrlrange='-1 1'/>"), "m.xml");
+      propose(arm("<motor joint='swing' ctrllimited='true' ctrlrange='-1 1'/>"));
   EXPECT_EQ(motor.options.motors, Texts());
   EXPECT_EQ(motor.motors, Texts({"swing"}));
-  const PlantProposal servo = propose(arm("<position joint='swing' kp='10'/>"), "s.xml");
+  const PlantProposal servo = propose(arm("<position joint='swing' kp='10'/>"));
   EXPECT_EQ(servo.options.motors, Texts({"swing"}));
 }
 
@@ -147,15 +151,14 @@ TEST_F(Proposal, ATorqueRangeInOneDirectionIsQuoted) {
   const PlantProposal proposal = propose(
       "<mujoco><worldbody><body><joint name='swing' axis='0 1 0' damping='.1'/><geom "
       "type='capsule' size='.05' fromto='0 0 0 0 0 -.5'/></body></worldbody><actuator><motor "
-      "joint='swing' ctrllimited='true' ctrlrange='0 30'/></actuator></mujoco>",
-      "pull.xml");
+      "joint='swing' ctrllimited='true' ctrlrange='0 30'/></actuator></mujoco>");
   EXPECT_NE(proposal.reasons.at("max_torque").find("torques [0, 30]"), std::string::npos);
 }
 
 TEST_F(Proposal, ATorqueThatMakesAJointFasterThanAFallIsLoweredAndMarked) {
-  std::string friction = pendulum("<limit effort='8' velocity='1'/>", "0 0 1");
-  friction.insert(friction.find(" damping="), " friction='2'");
-  const PlantProposal proposal = propose(friction);
+  const std::string friction = pendulum("<limit effort='8' velocity='1'/>", "0 0 1");
+  const PlantProposal proposal =
+      propose(testing::replaced(friction, " damping=", " friction='2' damping="));
   EXPECT_LT(proposal.options.max_torque.at(0), 8.0);
   EXPECT_EQ(proposal.to_set, std::set<std::string>({"goal", "max_torque", "tolerance"}));
   EXPECT_NE(proposal.reasons.at("max_torque").find("lowered"), std::string::npos);
@@ -166,10 +169,9 @@ TEST_F(Proposal, ATorqueIsNotLoweredBecauseASmallRobotFallsFast) {
   const PlantProposal proposal = propose(
       "<mujoco><option timestep='.0005'><flag contact='disable'/></option><worldbody><body><joint "
       "name='shoulder' axis='0 1 0'/>" +
-          rod + "<body pos='0 0 -.03'><joint name='elbow' axis='0 1 0'/>" + rod +
-          "</body></body></worldbody><actuator><motor joint='shoulder'/><motor "
-          "joint='elbow'/></actuator></mujoco>",
-      "small.xml");
+      rod + "<body pos='0 0 -.03'><joint name='elbow' axis='0 1 0'/>" + rod +
+      "</body></body></worldbody><actuator><motor joint='shoulder'/><motor "
+      "joint='elbow'/></actuator></mujoco>");
   EXPECT_GT(proposal.options.max_torque.at(0), 9.81 * 0.01 * (0.015 + 0.045));
   EXPECT_GT(proposal.options.max_torque.at(1), 9.81 * 0.01 * 0.015);
 }
@@ -193,7 +195,7 @@ TEST_F(Proposal, AVerticalSlideNeedsLimits) {
   const std::string lift =
       "<mujoco><worldbody><body><joint name='lift' type='slide' axis='0 0 1'/><geom type='box' "
       "size='.1 .1 .1'/></body></worldbody><actuator><motor joint='lift'/></actuator></mujoco>";
-  EXPECT_TRUE(testing::names(testing::refusalOf([&] { propose(lift, "lift.xml"); }),
+  EXPECT_TRUE(testing::names(testing::refusalOf([&] { propose(lift); }),
                              {"lift", "falls without end", "range"}));
 }
 
@@ -202,8 +204,7 @@ TEST_F(Proposal, NeitherStartNorGoalIsInsideATable) {
       "<mujoco><worldbody><geom type='plane' size='1 1 .1'/><body pos='0 0 .1'><joint "
       "name='shoulder' axis='0 1 0' range='-120 120' damping='.2'/><geom type='capsule' "
       "fromto='0 0 0 0 0 .3' size='.025'/></body></worldbody><actuator><motor joint='shoulder' "
-      "ctrlrange='-6 6'/></actuator></mujoco>",
-      "table.xml");
+      "ctrlrange='-6 6'/></actuator></mujoco>");
   const DataPointer data = makeData(model_->get());
   for (const std::vector<double>& pose : {proposal.options.start, proposal.options.goal}) {
     data->qpos[0] = pose[0];
@@ -241,14 +242,12 @@ TEST_F(Proposal, TheCameraLooksAlongTheAxesOfParallelHinges) {
     std::istringstream(axis) >> x >> y >> z;
     EXPECT_GT(std::abs(viewOf(proposal).dot(Eigen::Vector3d(x, y, z))), 0.99) << axis;
   }
-  const PlantProposal proposal =
-      propose(cartPole("<limit lower='-1' upper='1' effort='9' velocity='1'/>"));
+  const PlantProposal proposal = propose(cartPole());
   EXPECT_GT(std::abs(viewOf(proposal).y()), 0.99);
 }
 
 TEST_F(Proposal, AllPosesAreInTheImage) {
-  const PlantProposal proposal =
-      propose(cartPole("<limit lower='-1' upper='1' effort='9' velocity='1'/>"));
+  const PlantProposal proposal = propose(cartPole());
   MujocoPlant plant(model_, proposal.options);
   std::vector<Eigen::VectorXd> poses = proposal.poses;
   for (const double x : {-1.0, 1.0}) {
@@ -261,16 +260,14 @@ TEST_F(Proposal, SpringsPullTheStartWhereTheyAreAtRest) {
   const PlantProposal proposal = propose(
       "<mujoco><option gravity='0 0 0'/><worldbody><body><joint name='swing' axis='0 1 0' "
       "stiffness='50' springref='60'/><geom type='capsule' size='.05' fromto='0 0 0 0 0 -.5'/>"
-      "</body></worldbody><actuator><motor joint='swing'/></actuator></mujoco>",
-      "spring.xml");
+      "</body></worldbody><actuator><motor joint='swing'/></actuator></mujoco>");
   EXPECT_NEAR(proposal.options.start.at(0), kPi / 3.0, 0.01);
   // 4 N m would move the link without the spring.
   EXPECT_GT(proposal.options.max_torque.at(0), 20.0);
 }
 
 TEST_F(Proposal, ARailBesideAHingeDoesNotCountBecauseDegreesAndMetresCannotBeCompared) {
-  const PlantProposal proposal =
-      propose(cartPole("<limit lower='-1' upper='1' effort='9' velocity='1'/>"));
+  const PlantProposal proposal = propose(cartPole());
   EXPECT_NE(proposal.reasons.at("tolerance").find("of rail do not count"), std::string::npos);
   MujocoPlant plant(model_, proposal.options);
   EXPECT_GT(checkPlant(proposal, plant).changed_pixels, 25);  // of 2601 pixels
@@ -281,8 +278,7 @@ TEST_F(Proposal, TheCheckNamesAJointThatTheImageDoesNotShow) {
       "<mujoco><worldbody><body><joint name='swing' axis='0 1 0'/><geom type='capsule' size='.05' "
       "fromto='0 0 0 0 0 -.5'/><body pos='0 0 -.5'><joint name='wheel' axis='0 1 0'/><geom "
       "type='cylinder' size='.2 .05' zaxis='0 1 0'/></body></body></worldbody><actuator><motor "
-      "joint='wheel' ctrllimited='true' ctrlrange='-1 1'/></actuator></mujoco>",
-      "wheel.xml");
+      "joint='wheel' ctrllimited='true' ctrlrange='-1 1'/></actuator></mujoco>");
   MujocoPlant plant(model_, proposal.options);
   EXPECT_EQ(checkPlant(proposal, plant).unseen, Texts({"wheel"}));
 }

@@ -176,11 +176,10 @@ TEST_F(UrdfTest, CorrectsInertiasInALocaleWithADecimalComma) {
 }
 
 TEST_F(UrdfTest, TakesAnyInertiaOfTheRootLinkWhichNeverMoves) {
-  std::string text = Leg().text();
-  const std::string base = "<link name='base'/>";
-  text.replace(text.find(base), base.size(),
-               "<link name='base'><inertial><mass value='1'/><inertia ixx='0.02' iyy='0.02' "
-               "izz='0.5' ixy='0.3' ixz='0' iyz='0'/></inertial></link>");
+  const std::string text = testing::replaced(
+      Leg().text(), "<link name='base'/>",
+      "<link name='base'><inertial><mass value='1'/><inertia ixx='0.02' iyy='0.02' "
+      "izz='0.5' ixy='0.3' ixz='0' iyz='0'/></inertial></link>");
   EXPECT_EQ(refusalOf([&] { folder_.loadText(text, "leg.urdf"); }), "");
 }
 
