@@ -265,11 +265,21 @@ class SharedRobotCase(unittest.TestCase):
         self.robot.settle()
 
     def enterTrial(self, torque=2.0):
-        wait_until(lambda: self.robot.enable(True).success, "permission")
-        self.robot.answerAll(torque)  # on a busy machine the first torque may be late
-        self.robot.waitForEffort(torque)
+        self.follow(torque)  # on a busy machine the first torque may be late
         del self.robot.cancels.messages[:]  # on a busy machine the trial may have begun more than once
         self.robot.stopAnswering()
+
+    def assertNotEnabled(self, *words):
+        refused = self.robot.enable(True)
+        self.assertFalse(refused.success)
+        for word in words:
+            self.assertIn(word, refused.message)
+
+    def follow(self, torque=2.0):
+        """Enables the motors, and publishes this torque for each image from now on."""
+        wait_until(lambda: self.robot.enable(True).success, "permission")
+        self.robot.answerAll(torque)
+        self.robot.waitForEffort(torque)
 
     def assertCancelled(self):
         wait_until(lambda: self.robot.cancels.messages, "the trial is cancelled")

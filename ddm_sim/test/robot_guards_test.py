@@ -60,16 +60,12 @@ class RobotLimitsTest(SharedRobotCase):
 
     def setUp(self):
         super().setUp()
-        wait_until(lambda: self.robot.enable(True).success, "a report")
-        self.robot.answerAll(2.0)
-        self.robot.waitForEffort(2.0)
+        self.follow()
 
     def assertStopped(self, words):
         self.robot.waitForEffort(0.0)
         self.assertCancelled()
-        refused = self.robot.enable(True)
-        self.assertFalse(refused.success)
-        self.assertIn(words, refused.message)
+        self.assertNotEnabled(words)
         self.assertEqual(self.robot.effort(), 0.0)
 
     def test_a_joint_that_two_nodes_report_stops_the_motors(self):
@@ -93,10 +89,7 @@ class RobotLimitsTest(SharedRobotCase):
     def test_without_reports_the_torque_is_zero(self):
         self.joints.reporting = False
         self.robot.waitForEffort(0.0)
-        refused = self.robot.enable(True)
-        self.assertFalse(refused.success)
-        for word in ("joint_states", "joint arm", "0.2 s"):
-            self.assertIn(word, refused.message)
+        self.assertNotEnabled("joint_states", "joint arm", "0.2 s")
         self.assertEqual(self.robot.cancels.messages, [])
         self.joints.reporting = True
         self.robot.waitForEffort(2.0)
