@@ -109,6 +109,8 @@ TEST(Environment, DrawsAGoalForEachRunAndShowsItOnTheGoalImage) {
       environment.reset({kSeed, trial, evaluation});
       const Eigen::VectorXd goal = environment.plant().goal();
       EXPECT_EQ(goal, goalOf(alone, {kSeed, trial, evaluation}));
+      std::mt19937_64 starts = randomStream({kSeed, trial, evaluation}, StreamRole::kStart);
+      EXPECT_NE(alone.drawGoal(starts), goal) << "goals have a stream of their own";
       EXPECT_EQ(environment.goalImage().bytes, alone.render(goal).bytes);
       EXPECT_EQ(environment.plant().goalError(goal), 0.0);
       goals.insert(goal[0]);

@@ -1,4 +1,4 @@
-// Tests of the base class of plants: checks, saturation, initial states and their random stream.
+// Tests of the base class of plants: checks, saturation and initial states.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_sim/plant.h"
 
@@ -8,7 +8,6 @@
 #include <cmath>
 #include <functional>
 #include <memory>
-#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -115,18 +114,6 @@ TEST(Plant, RefusesAnImageThatIsNotWhatItsSizeSays) {
   }
   traits.draw = [sound](const Eigen::VectorXd&) { return sound; };
   EXPECT_EQ(ToyPlant(traits).render(Eigen::Vector2d::Zero()).bytes, sound.bytes);
-}
-
-TEST(StartStream, DiffersBetweenSeedsTrialsAndEvaluation) {
-  const ToyPlant plant(testing::colourfulToy());
-  std::set<double> drawn;
-  const std::vector<TrialId> runs = {{0, 0, false}, {1, 0, false}, {0, 1, false}, {0, 0, true}};
-  for (const TrialId& run : runs) {
-    std::mt19937_64 stream = randomStream(run, StreamRole::kStart);
-    drawn.insert(plant.drawGoal(stream)[0]);
-    drawn.insert(goalOf(plant, run)[0]);
-  }
-  EXPECT_EQ(drawn.size(), 2 * runs.size()) << "goals have a stream of their own";
 }
 
 TEST(MakePlant, RefusesWhatAPlantMayNotSayOfItself) {
