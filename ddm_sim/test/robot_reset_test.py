@@ -26,6 +26,19 @@ class RobotResetTest(RobotCase):
         service = rospy.Service(name, Trigger, function)
         self.addCleanup(service.shutdown)
 
+    def offerHanging(self, name):
+        """Offers a service that does not answer until it is released. Returns the events of its call and of its release."""
+        called, released = threading.Event(), threading.Event()
+        self.addCleanup(released.set)
+
+        def hang(_):
+            called.set()
+            released.wait(2.0 * LIMIT_S)  # longer than all waits of a test
+            return TriggerResponse(success=True)
+
+        self.offer(name, hang)
+        return called, released
+
     def test_a_reset_asks_for_goal_start_and_motors_in_turn(self):
         robot = self.start("_robot/goal_file:=" + self.goal)
         self.assertFalse(robot.resetDone().success)  # no reset is waiting
@@ -71,15 +84,7 @@ class RobotResetTest(RobotCase):
         enabled = Listener("motors_enabled", Bool)
         self.addCleanup(enabled.end)
         self.assertTrue(robot.enable(True).success)
-        called, released = threading.Event(), threading.Event()
-        self.addCleanup(released.set)
-
-        def goHome(_):
-            called.set()
-            released.wait(2.0 * LIMIT_S)  # longer than all waits below
-            return TriggerResponse(success=True)
-
-        self.offer("go_home", goHome)
+        called, released = self.offerHanging("go_home")
         answer = robot.reset()
         self.assertTrue(called.wait(LIMIT_S))
         wait_until(lambda: enabled.messages[-1].data, "permission")
@@ -116,15 +121,7 @@ class RobotResetTest(RobotCase):
         robot = self.start("_robot/reset_service:=go_home", "_robot/reset_timeout:=1.5")
         wait_until(lambda: robot.takeGoal().success, "a camera")
         self.assertTrue(robot.enable(True).success)
-        called, released = threading.Event(), threading.Event()
-        self.addCleanup(released.set)
-
-        def hang(_):
-            called.set()
-            released.wait(LIMIT_S)
-            return TriggerResponse(success=True)
-
-        self.offer("go_home", hang)
+        called, _ = self.offerHanging("go_home")
         first = robot.reset()
         self.assertTrue(called.wait(LIMIT_S))
         self.assertIn("another reset", robot.reset()().message)
