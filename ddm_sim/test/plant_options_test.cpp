@@ -109,12 +109,6 @@ TEST(PlantRegistry, ReadsThePlantThatItsTypeNamesWithItsOwnKeys) {
   EXPECT_EQ(tile->make()->info().max_torque, Eigen::Vector2d(3.0, 4.0));
 }
 
-TEST(PlantRegistry, RefusesAnUnknownTypeAndListsTheKnownOnes) {
-  EXPECT_TRUE(testing::throwsNaming<std::invalid_argument>(
-      [] { plantOfText("plant: {type: cart}"); },
-      {"plant/type", "cart", "moving_tile", "pendulum", "two_link"}));
-}
-
 TEST(ParameterReferences, HaveTheDefaultsOfTheStructs) {
   testing::expectDefaults<CameraOptions>(kConfig + "sim.yaml", "camera");
   testing::expectDefaults<SimOptions>(kConfig + "sim.yaml", "sim");

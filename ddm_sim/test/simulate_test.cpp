@@ -223,11 +223,13 @@ TEST_F(Simulate, RefusesBadTorquesAndWritesNothing) {
 
 TEST_F(Simulate, RefusesABadConfigurationFile) {
   const std::string path = (folder_ / "bad.yaml").string();
-  for (const auto& [yaml, word] : {std::make_pair("plant: {dt: -1}\n", "plant/dt"),
-                                   std::make_pair("plant: {lenght: 1}\n", "lenght"),
-                                   std::make_pair("plant: {type: cart}\n", "plant/type")}) {
+  const std::vector<std::pair<std::string, std::vector<std::string>>> cases{
+      {"plant: {dt: -1}\n", {"plant/dt"}},
+      {"plant: {lenght: 1}\n", {"lenght"}},
+      {"plant: {type: cart}\n", {"plant/type", "cart", "moving_tile", "pendulum", "two_link"}}};
+  for (const auto& [yaml, words] : cases) {
     std::ofstream(path) << yaml;
-    expectRefused(1, "--plant pendulum --config " + path, {word});
+    expectRefused(1, "--plant pendulum --config " + path, words);
   }
   expectRefused(1, "--plant pendulum --config /no/such.yaml", {"/no/such.yaml"});
 }
