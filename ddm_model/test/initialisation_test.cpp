@@ -82,13 +82,6 @@ TEST_F(Initialisation, ARandomStartLeavesThePcaOutAndThePredictorAsItIs) {
   EXPECT_EQ(a.tail(nets.f().numParams()), from_pca.tail(nets.f().numParams()));
 }
 
-TEST_F(Initialisation, StaysFiniteWhereThereIsNoSpread) {
-  std::mt19937_64 rng(1);
-  const ModelOptions options = testing::toyModelOptions();
-  const Eigen::MatrixXd nothing = Eigen::MatrixXd::Zero(6, 20);
-  EXPECT_TRUE(initialTheta(Networks<double>(options, 1), nothing, pca_start_, &rng).allFinite());
-}
-
 TEST_F(Initialisation, JoinedAutoEncodersGiveAllFeaturesAndTheMeanOfTheirImages) {
   const ModelOptions one = testing::toyModelOptions();
   const std::vector<Eigen::VectorXd> thetas = {initial(one, 1), initial(one, 2), initial(one, 3)};
