@@ -3,8 +3,10 @@
 #include "ddm_common/plain_file.h"
 
 #include <fcntl.h>
+#include <pwd.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -140,9 +142,14 @@ void renameDurably(const std::string& from, const std::string& to) {
 std::string expandHome(std::string word) {
   const std::size_t start = word.rfind("--", 0) == 0 ? word.find('=') + 1 : 0;  // npos + 1 is 0
   if (start >= word.size() || word[start] != '~') return word;
-  const bool alone = start + 1 == word.size() || word[start + 1] == '/';  // not ~name/x
-  const char* const home = std::getenv("HOME");
-  return alone && home != nullptr ? word.replace(start, 1, home) : word;
+  const std::size_t end = std::min(word.find('/', start), word.size());
+  const std::string name = word.substr(start + 1, end - start - 1);
+  const char* home = name.empty() ? std::getenv("HOME") : nullptr;
+  if (!name.empty()) {
+    const passwd* const user = ::getpwnam(name.c_str());
+    if (user != nullptr) home = user->pw_dir;
+  }
+  return home == nullptr ? word : word.replace(start, end - start, home);
 }
 
 }  // namespace ddm

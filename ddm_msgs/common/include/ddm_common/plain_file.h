@@ -37,8 +37,9 @@ void removeUnfinished(const std::string& folder);
 /// @throws std::runtime_error with the path and the reason
 void renameDurably(const std::string& from, const std::string& to);
 
-/// Replaces `~` in `~/x` by the home folder. A shell does so only at the start of a word, not in
-/// `--out=~/x`, and not in `runs:=~/x` of roslaunch. Any other text is returned unchanged.
+/// Replaces `~` in `~/x` and `~name` in `~name/x` by the home folder. A shell does so only at the
+/// start of a word, not in `--out=~/x`, and not in `runs:=~/x` of roslaunch. Any other text is
+/// returned unchanged.
 /// @param word  path, or option with a path as its value, such as `--out=~/x`
 std::string expandHome(std::string word);
 
