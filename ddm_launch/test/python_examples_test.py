@@ -46,7 +46,7 @@ def test_algorithm_1_prints_the_success_after_each_trial(tmp_path):
 def test_compare_method_writes_tables_that_the_figure_draws(tmp_path):
     run_commands(tmp_path, "compare_method.py", ("--seeds 5", "--seeds 2"))
     tables = [(tmp_path / name).read_text().splitlines() for name in ("ddm.csv", "other.csv")]
-    assert [[row.split(",")[:3] for row in table[1:]] for table in tables] == [[["0", "0", "100"], ["1", "0", "100"]]] * 2
+    assert [[row.split(",")[:3] for row in table[1:]] for table in tables] == [[["2000", "0", "100"], ["2001", "0", "100"]]] * 2
     assert "1" in [row.split(",")[3] for row in tables[0][1:]] and (tmp_path / "comparison.png").exists()
 
 
