@@ -1,5 +1,4 @@
-// Tests of the fully connected network: gradients and memory. bindings_test.py compares its values
-// with NumPy.
+// Tests of the fully connected network: gradients, memory (bindings_test.py compares its values).
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_model/mlp.h"
 
