@@ -1,5 +1,4 @@
-// Tests of multi-step prediction with a Gaussian process in f. Those of the objective and of the
-// plan cost cover networks.
+// Tests of predictions over several steps by a Gaussian process; objective_test.cpp covers networks.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddm_model/roll_out.h"
 
