@@ -23,8 +23,10 @@ TOLERANCE = 1e-9  # largest difference of a repeated torque [N m]
 def plan_at(run, trial, step, model):
     """Repeats the evaluation after a trial up to a step. Returns (features of the plan made there, goal feature). Raises
     Failure if there is no such step or plan, or if the repeated torques differ from the recorded ones."""
-    folder, blocks = os.path.join(run, "evaluation_%03d" % trial), read_yaml(run, "config.yaml")
-    path, recorded, experiment = os.path.join(folder, "torques.csv"), read_torques(folder).values, blocks["experiment"]
+    folder = os.path.join(run, "evaluation_%03d" % trial)
+    path, recorded = os.path.join(folder, "torques.csv"), read_torques(folder).values
+    blocks = read_yaml(run, "config.yaml")
+    experiment = blocks["experiment"]
     if step >= len(recorded):
         raise Failure("--step must be less than the %d steps of %s, got %d" % (len(recorded), path, step))
     env = ddm_sim.make(experiment["plant"], plant=blocks["plant"], camera=blocks["camera"])
@@ -32,17 +34,18 @@ def plan_at(run, trial, step, model):
     image, info = env.reset(seed=experiment["seed"], options={"trial": trial, "evaluation": True})
     controller.reset(seed=experiment["seed"], trial=trial)
     controller.set_goal(info["goal_image"])
-    for now in range(step + 1):
+    for number_of_image in range(step + 1):
         torque = controller.act(image)
-        if np.abs(torque - recorded[now]).max() > TOLERANCE:
-            raise Failure("%s: the torque of step %d is another here: use the machine and build that made the run" % (path, now))
-        if now < step:
+        if np.abs(torque - recorded[number_of_image]).max() > TOLERANCE:
+            raise Failure("%s: the torque of step %d is another here: use the machine and build that made the run" % (
+                path, number_of_image))
+        if number_of_image < step:
             time_s = info["time"]
             image, _, _, _, info = env.step(torque)
             if info["time"] - time_s > 1.5 * env.dt:  # the camera has lost an image
                 controller.start_segment()
     if controller.plan_features is None:
-        raise Failure("there is no plan at step %d" % step)
+        raise Failure("%s: the plan of step %d has failed, so that it has no features: give another --step" % (path, step))
     return controller.plan_features, model.encode(info["goal_image"][None])
 
 

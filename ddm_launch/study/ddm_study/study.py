@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import os
 
-from ddm_launch.command import number, package_path, program_parser, run_program
+from ddm_launch.command import Failure, number, package_path, program_parser, run_program
 from ddm_launch.figure import add_figures
 from ddm_study import collect, compare, curves, diagnosis, features, pages
 
@@ -14,20 +14,22 @@ each goal, and runs/ with everything that the experiments left. Run the same com
 not made again: after a change of code or settings, remove its folder in runs/ and its table first."""
 GOALS = """\
 goals: paper (the paper's experiments), efficient (as few images as possible), underactuated (the cart-pole), any file
-that the Makefile has a rule for, and variables of make: SEEDS=2 (at most two seeds of each sweep), PAPER=debug or EFFICIENT=debug (another preset),
-PILCO= (without PILCO, which takes hours)."""
+that the Makefile has a rule for, and variables of make: SEEDS=2 (at most two seeds of each sweep), PAPER=debug or
+EFFICIENT=debug (another preset), PILCO= (without PILCO, which takes hours)."""
 FIGURES = {"angle_trajectories": curves.TRAJECTORIES, "feature_plane": features.PLANE,
            "pendulum_feature_space": features.SPACE, "prediction_strip": features.STRIP, "task": curves.TASK}
 
 
 def reproduce(options):
-    """Replaces this process by make with the rules of the study, so that signals reach make. Raises OSError if make is
-    missing."""
+    """Replaces this process by make with the rules of the study. Raises Failure if make is missing."""
     os.makedirs(options.out, exist_ok=True)
     words = ["make", "-f", package_path("study", "Makefile"), "-C", options.out, *options.goals]
     words += ["JOBS=%d" % options.jobs] if options.jobs else []
     words += ["--dry-run"] if options.dry_run else []
-    os.execvp(words[0], words)
+    try:
+        os.execvp(words[0], words)  # make replaces this process, so that signals reach make
+    except FileNotFoundError:
+        raise Failure("the program make is missing: install the package make") from None
 
 
 def add_commands(parser):

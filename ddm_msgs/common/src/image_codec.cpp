@@ -174,6 +174,12 @@ cv::Mat centralSquare(const cv::Mat& grey) {
   return grey(cv::Rect((grey.cols - side) / 2, (grey.rows - side) / 2, side, side));
 }
 
+double greyScale(int depth) {
+  if (depth == CV_8U) return 1.0;
+  if (depth == CV_16U) return 1.0 / 257.0;
+  return 255.0;
+}
+
 /// Whether a JPEG is truncated; OpenCV fills missing parts with grey. The search for the end marker
 /// begins after the headers, because the headers may contain a smaller JPEG.
 bool isJpegCutShort(const std::vector<std::uint8_t>& data) {
@@ -209,9 +215,7 @@ std::vector<std::uint8_t> decodeImage(const sensor_msgs::Image& image, int size,
   } catch (const std::exception& e) {
     refuse("cannot convert ", extent(image), " to grey: ", e.what());
   }
-  const double scale = grey.depth() == CV_8U    ? 1.0
-                       : grey.depth() == CV_16U ? 1.0 / 257.0
-                                                : 255.0;  // float
+  const double scale = greyScale(grey.depth());
   grey.convertTo(grey, CV_64F);
   std::vector<std::uint8_t> out;
   out.reserve(grey.total());
