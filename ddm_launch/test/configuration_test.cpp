@@ -35,11 +35,6 @@ std::vector<std::string> namesIn(const std::string& folder) {
   return names;
 }
 
-Configuration read(const std::vector<std::string>& files) {
-  ParamReader reader = ParamReader::fromFiles(files);
-  return readConfiguration(&reader);
-}
-
 Configuration read(const Arguments& arguments) {
   ParamReader reader = resolve(arguments).reader();
   return readConfiguration(&reader);
