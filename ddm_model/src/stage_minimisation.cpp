@@ -150,7 +150,10 @@ SolverResult minimiseStage(const Stage& stage, const TrainingOptions& training,
   std::mt19937_64 rng(1);  // draws signs, see JointObjective::factors()
   const int cap = stage.max_iterations;
   MinimiseOptions options;
-  options.lbfgs_rank = training.solver == "bfgs" ? 0 : kfac ? kKfacRank : kLbfgsRank;
+  // L-BFGS that stores all steps is BFGS, and fast if the steps are fewer than the parameters. More
+  // steps than parameters are not stored, because the memory would have no bound.
+  const int all_steps = std::min(cap, static_cast<int>(free.size));
+  options.lbfgs_rank = training.solver == "bfgs" ? all_steps : kfac ? kKfacRank : kLbfgsRank;
   options.function_tolerance = training.function_tolerance;
   options.gradient_tolerance = 1e-9;
   SolverResult total;

@@ -38,6 +38,18 @@ TEST(Minimise, FindsTheMinimumWithFullAndWithLimitedMemory) {
   }
 }
 
+TEST(Minimise, StoringAllStepsGivesTheStepsOfBfgs) {
+  MinimiseOptions bfgs, all_steps;
+  bfgs.max_iterations = all_steps.max_iterations = all_steps.lbfgs_rank = 12;
+  const SolverResult expected = minimise(valley, vectorOf({-1.2, 1.0}), bfgs);
+  const SolverResult result = minimise(valley, vectorOf({-1.2, 1.0}), all_steps);
+  EXPECT_LT((result.x - expected.x).norm(), 1e-9);
+  EXPECT_EQ(result.evaluations, expected.evaluations);
+
+  all_steps.lbfgs_rank = 1;  // the comparison notices steps that are not stored
+  EXPECT_GT((minimise(valley, vectorOf({-1.2, 1.0}), all_steps).x - expected.x).norm(), 1e-6);
+}
+
 TEST(Minimise, KeepsItsLimitsAndReturnsTheBestSoFar) {
   MinimiseOptions options;
   options.max_iterations = 4;
