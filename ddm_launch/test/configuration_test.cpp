@@ -76,7 +76,6 @@ TEST(Configuration, ThePaperPresetHoldsTheNumbersOfThePaper) {
   EXPECT_EQ(all.model.model.encoder_widths, (std::vector<int>{25, 12, 6}));
   EXPECT_EQ(all.model.model.predictor_widths, (std::vector<int>{4}));
   EXPECT_EQ(all.model.model.predictor, "network");
-  EXPECT_EQ(all.model.training.solver, "bfgs");
   EXPECT_EQ(all.model.training.prediction_steps, 1);
   EXPECT_EQ(all.model.training.weight_decay, 0.0);
   EXPECT_EQ(all.model.training.num_starts, 1);
